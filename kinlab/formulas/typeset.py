@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import math
 import re
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -106,6 +107,10 @@ _LETTERS = (
     "alpha beta gamma delta epsilon zeta eta theta lambda mu nu xi rho sigma tau phi psi omega pi"
 )
 _GREEK = set(_LETTERS.split())
+_WORST = "Thetad"
+"""The largest rate of a five-bar's cranks, as note 003 writes it."""
+_PI, _PARTS = Fraction(repr(math.pi)), 12
+"""Pi as it is read, and into how many parts of it a number may fall."""
 _JOINT = re.compile(r"(d{0,2})(theta|th|q)(d{1,2}(?![a-z])|_?dot|_?ddot)?_?([1-9]\d?)")
 _NAMED = {
     "asin": r"\arcsin",
@@ -169,6 +174,8 @@ def symbol(name: str) -> str:
         base = "q" if letter == "q" else r"\theta"
         dotted = {0: base, 1: rf"\dot{{{base}}}", 2: rf"\ddot{{{base}}}"}[dots]
         return f"{dotted}_{{{index}}}"
+    if name.startswith(_WORST):
+        return rf"\dot{{\Theta}}_{{{name.removeprefix(_WORST).replace('_', '')}}}"
     short = SHORTHAND.fullmatch(name)
     if short:
         return f"{short.group(1)}_{{{short.group(2)}}}"
@@ -267,6 +274,9 @@ def _wrapped(node: Node, marks: Marks, path: Path, ops: tuple[str, ...]) -> str:
 
 
 def _number(value: Fraction) -> str:
+    part = value / _PI
+    if part and part.denominator <= _PARTS:
+        return _of_pi(part)
     text = tree.to_text(tree.num(value))
     sign, text = ("-", text[1:]) if text.startswith("-") else ("", text)
     if "/" in text:
@@ -276,6 +286,13 @@ def _number(value: Fraction) -> str:
     if exponent:
         return rf"{sign}{mantissa} \cdot 10^{{{int(exponent)}}}"
     return sign + text
+
+
+def _of_pi(part: Fraction) -> str:
+    """A part of pi, or a multiple."""
+    above = rf"{abs(part.numerator)} \pi" if abs(part.numerator) > 1 else r"\pi"
+    shown = above if part.denominator == 1 else rf"\frac{{{above}}}{{{part.denominator}}}"
+    return f"-{shown}" if part < 0 else shown
 
 
 def _visible(text: str) -> int:
