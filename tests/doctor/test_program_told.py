@@ -326,3 +326,25 @@ def f(q):
     found = kl.diagnose(arm, "mass_matrix", written(wrong), samples=20)
     assert found.causes
     assert "line 5" not in found.causes[0].places, found.sentence
+
+
+COUPLED = """
+import numpy as np
+
+def f(q, v):
+    h = 1.5*0.5*0.4*np.sin(q[1])
+    return np.array([-2*h*v[0]*v[1] - h*v[1]**2, h*v[0]**2])
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("-2*h*v[0]*v[1] -", "-h*v[0]*v[1] -", "[-2*h*v[0]*v[1] - h*v[1]**2"),
+        ("h*v[0]**2]", "-h*v[0]**2]", "h*v[0]**2])`"),
+    ],
+)
+def test_signs_and_factors_of_products_are_typed_without_parentheses(old, new, told, said) -> None:
+    sentence = said(COUPLED, old, new, "planar2r", "coriolis_torques")
+    right = sentence.partition("should be `")[2].partition("`")[0] + "`"
+    assert told in right and "(-" not in right and "*(" not in right
