@@ -228,7 +228,7 @@ LIFT_ARM = kl.DHTable(
 CASES = {
     "a factor of a value is lost where it is worked out": (
         POLAR, POLAR_ARM, "inverse_dynamics", [("pull = 0.5*change", "pull = change")],
-        "`pull = change*v[0]**2` should be `pull = 0.5*(change*v[0]**2)`",
+        "`pull = change*v[0]**2` should be `pull = 0.5*change*v[0]**2`",
     ),
     "absolute angles have their sign": (
         STATICS, "planar3r", "statics", [("J[0, j] = -sum", "J[0, j] = sum")],
