@@ -11,7 +11,7 @@ import pytest
 from hand_programs import repaired, written
 
 import kinlab as kl
-from kinlab.doctor.program.edits.operators import negated
+from kinlab.doctor.program.edits.single.comparisons import negated
 from kinlab.doctor.program.grounds.scaled import other_arm
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.own.calls import QUICK

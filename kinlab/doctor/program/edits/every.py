@@ -22,27 +22,15 @@ from kinlab.doctor.program.edits.elsewhere import Elsewhere
 from kinlab.doctor.program.edits.forgotten import of_forgotten, of_kinds_of_joints, with_slices
 from kinlab.doctor.program.edits.guards import choices, masks, of_guards
 from kinlab.doctor.program.edits.numbers.data import of_data
-from kinlab.doctor.program.edits.operators import (
-    is_diagonal,
-    keys_of,
-    negated,
-    of_attribute,
-    of_call,
-    of_comparison,
-    of_comparisons,
-    of_constant,
-    of_keys,
-    of_letters,
-    of_name,
-    of_operator,
-    of_sequence,
-    of_subscript,
-    plus,
-    shifted,
-    value_of,
-    whole_constant,
-)
 from kinlab.doctor.program.edits.scope import Scope, statement_of, summands
+from kinlab.doctor.program.edits.single.calls import of_call
+from kinlab.doctor.program.edits.single.comparisons import negated, of_comparison, of_comparisons
+from kinlab.doctor.program.edits.single.constants import of_constant
+from kinlab.doctor.program.edits.single.entries import keys_of, of_keys, of_subscript
+from kinlab.doctor.program.edits.single.names import of_attribute, of_name
+from kinlab.doctor.program.edits.single.operators import is_diagonal, of_operator
+from kinlab.doctor.program.edits.single.rows import of_letters, of_sequence
+from kinlab.doctor.program.edits.single.whole import plus, shifted, value_of, whole_constant
 from kinlab.doctor.program.edits.subscripts import of_subscripts
 from kinlab.doctor.program.observed import Observed, Seen
 from kinlab.doctor.program.places import Here, ProgramEdit, called, number, places

@@ -20,8 +20,8 @@ from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.numbers.data import NumberPlace, leaves_of, numbers, together
 from kinlab.doctor.program.edits.numbers.own_numbers import among, may_be_gravity, sizes_of
-from kinlab.doctor.program.edits.operators import SIZES
 from kinlab.doctor.program.edits.scope import ARCS
+from kinlab.doctor.program.edits.single.whole import SIZES
 from kinlab.doctor.program.grounds.called import kinds_called
 from kinlab.doctor.program.grounds.scaled import unused
 from kinlab.doctor.program.observed import Observed, Seen

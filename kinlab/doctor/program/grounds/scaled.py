@@ -25,7 +25,7 @@ from kinlab.doctor.program.edits.numbers.data import (
     numbers,
     together,
 )
-from kinlab.doctor.program.edits.operators import SIZES
+from kinlab.doctor.program.edits.single.whole import SIZES
 from kinlab.doctor.program.grounds.called import kinds_called
 from kinlab.doctor.program.grounds.labels import Label, Labels
 from kinlab.doctor.program.observed import Observed

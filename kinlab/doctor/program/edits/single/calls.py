@@ -1,0 +1,188 @@
+"""Calls of a program otherwise: another function, other arguments, loops from elsewhere."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from itertools import combinations
+
+from kinlab.doctor.bytecode.syntax import names, nodes
+from kinlab.doctor.program.edits.scope import Scope
+from kinlab.doctor.program.edits.single.operators import DIAGONALS
+from kinlab.doctor.program.edits.single.whole import plus, whole_constant
+from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, called, number
+
+_ORDERED = ("cross", "dot", "arctan2", "atan2", "outer", "solve", "matmul", "subtract", "array")
+_DIAGONAL = 1.02
+"""Cost of the main diagonal for another."""
+_ARGUMENTS, _APART = 4, 0.03
+"""The same of arguments; what it costs more of those that do not stand side by side."""
+_FAMILIES = (
+    ("zeros", "ones"),
+    ("array", "asarray", "cumsum"),
+    ("sum", "cumsum", "prod"),
+    ("dot", "cross", "outer", "multiply"),
+    ("arcsin", "arccos", "arctan"),
+    ("asin", "acos", "atan"),
+    ("hstack", "vstack", "column_stack"),
+    ("tril", "triu"),
+    ("radians", "degrees"),
+    ("deg2rad", "rad2deg"),
+    ("inv", "pinv"),
+    ("min", "max"),
+    ("sqrt", "square"),
+)
+"""Functions of which one is written for another."""
+
+
+def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
+    node = here.node
+    name = called(node)
+    if name in ANGLES:
+        for other in ANGLES:
+            if other != name:
+                cost = 1.0 if {other, name} == {"sin", "cos"} else 1.5
+                if isinstance(node.func, ast.Attribute):
+                    yield here.within(node.func, "attr", other, "sin/cos", cost)
+                else:
+                    new = ast.Name(other, ast.Load())
+                    yield here.within(node, "func", new, "sin/cos", cost)
+        if node.args:
+            argument = ast.unparse(node.args[0])
+            for text, angle in scope.angles.items():
+                if text != argument:  # what is odd among others is rather meant as they are
+                    odd = scope.taken[argument] == 1 < scope.taken[text] + 1
+                    yield here.within(node.args, 0, angle, "argument", 1.08 if odd else 1.15)
+    if scope.crosses(node):
+        for factor in node.args:
+            yield here.instead(factor, "extra factor", 1.1)
+    if name in DIAGONALS and len(node.args) > 1:
+        diagonal = getattr(node.args[-1], "operand", node.args[-1])
+        for k in (0, 1, -1) if whole_constant(diagonal) else ():
+            cost = _DIAGONAL + _APART * bool(k)
+            yield here.within(node.args, len(node.args) - 1, number(k), "index", cost)
+    if name == "range":
+        yield from _range(here, scope)
+    for word in node.keywords:
+        if (
+            word.arg == "axis"
+            and isinstance(word.value, ast.Constant)
+            and word.value.value in (0, 1)
+        ):
+            yield here.within(word, "value", number(1 - word.value.value), "index", 1.08)
+    if name == "zip" and len(cut := {_cut(one) for one in node.args}) == 1 and cut != {""}:
+        wholes = [getattr(one, "value", one) for one in node.args]
+        yield here.within(node, "args", wholes, "loop", 1.08)
+    yield from _other_function(here, name)
+    if isinstance(node.func, ast.Attribute) and name in ("append", "insert") and node.args:
+        first = [ast.Constant(0)] if name == "append" else []
+        method = ast.Attribute(node.func.value, "insert" if first else "append", ast.Load())
+        yield here.instead(ast.Call(method, [*first, node.args[-1]], []), "order", 1.12)
+    if isinstance(node.func, ast.Name):
+        for other, count in scope.functions.items():
+            if other != name and count == len(node.args) and count == scope.functions.get(name):
+                yield here.within(node, "func", ast.Name(other, ast.Load()), "function", 1.1)
+        if scope.functions.get(name, 0) == len(node.args) + 1 and not node.keywords:
+            for given in scope.shapes:  # the last one has a default
+                if given not in scope.counters:
+                    args = [*node.args, ast.Name(given, ast.Load())]
+                    yield here.within(node, "args", args, "missing argument", 1.15)
+    if name == "diag" and (observed.shape(node) or ())[1:] == ():
+        yield here.instead(ast.Call(node.func, [node], []), "function", 1.1)
+    plain = [a for a in node.args if not isinstance(a, ast.Starred)]
+    if len(plain) == len(node.args):
+        for i, j in combinations(range(len(plain)), 2):
+            if j > i + 1 and len(plain) > _ARGUMENTS:
+                continue
+            swapped = [*plain]
+            swapped[i], swapped[j] = swapped[j], swapped[i]
+            cost = 1.02 if scope.crosses(node) else 1.05 if name in _ORDERED else 1.15
+            yield here.within(node, "args", swapped, "order", cost + _APART * (j > i + 1))
+        if name in ("arctan2", "atan2") and len(plain) == 2:
+            for one in (0, 1):  # the angle from the other axis
+                turned = [plain[1], plain[0]]
+                turned[one] = ast.UnaryOp(ast.USub(), turned[one])
+                yield here.within(node, "args", turned, "order", 1.12)
+        if len(plain) == 1 and observed.shape(plain[0]) is not None and name not in ANGLES:
+            yield here.instead(plain[0], "extra factor", 1.25)
+        if name == "inv" and observed.shape(plain[0]) is not None:
+            yield here.instead(ast.Attribute(plain[0], "T", ast.Load()), "inverse", 1.15)
+        if name == "solve" and len(plain) == 2:
+            product = ast.BinOp(plain[0], ast.MatMult(), plain[1])
+            yield here.instead(product, "inverse", 1.25)
+
+
+def _cut(node: ast.expr) -> str:
+    """The part of a row that is taken, as it is written; empty of all of it."""
+    cut = isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Slice)
+    return ast.unparse(node.slice) if cut and isinstance(node, ast.Subscript) else ""
+
+
+def _is_typed_in(node: ast.expr) -> bool:
+    """Whether nothing but numbers stand there."""
+    plain = ast.List | ast.Tuple | ast.Constant | ast.UnaryOp | ast.unaryop | ast.expr_context
+    return all(isinstance(one, plain) for one in nodes(node))
+
+
+def _other_function(here: Here, name: str) -> Iterator[ProgramEdit]:
+    node = here.node
+    for family in _FAMILIES:
+        for other in family:
+            if other == "cumsum" and node.args and _is_typed_in(node.args[0]):
+                continue  # numbers are rather wrong themselves
+            if name in family and other != name and isinstance(node.func, ast.Attribute):
+                yield here.within(node.func, "attr", other, "function", 1.14)
+    if name in ("ones", "zeros", "full") and isinstance(node.func, ast.Attribute) and node.args:
+        first = node.args[0]
+        size = first.elts[0] if isinstance(first, ast.Tuple) and first.elts else first
+        eye = ast.Call(ast.Attribute(node.func.value, "eye", ast.Load()), [size], [])
+        yield here.instead(eye, "function", 1.14)
+    if name in ("eye", "identity") and isinstance(node.func, ast.Attribute) and node.args:
+        shape = ast.Tuple([node.args[0], node.args[0]], ast.Load())
+        for other in ("ones", "zeros"):
+            filled = ast.Call(ast.Attribute(node.func.value, other, ast.Load()), [shape], [])
+            yield here.instead(filled, "function", 1.2)
+
+
+def _range(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    node = here.node
+    args = node.args
+    for k, argument in enumerate(args):
+        for step in (1, -1):
+            new = [*args]
+            new[k] = plus(argument, step)
+            yield here.within(node, "args", new, "loop", 1.1)
+    if isinstance(here.parent, ast.For):
+        yield from _other_way(here)
+    for others in scope.ranges:
+        if ast.dump(others) != ast.dump(node):
+            yield here.within(node, "args", [*others.args], "loop", 1.12)
+    inner = scope.counters
+    loops = [one for one in here.above if isinstance(one, ast.For) and one.iter is not node]
+    around = {name for one in loops for name in names(one.target)}
+    if len(args) == 1:
+        for name in inner:
+            load, cost = ast.Name(name, ast.Load()), 1.13 if name in around else 1.2
+            for new in ([load], [plus(load, 1)], [load, args[0]], [plus(load, 1), args[0]]):
+                yield here.within(node, "args", new, "loop", cost)
+        yield here.within(node, "args", [ast.Constant(1), args[0]], "loop", 1.2)
+    else:
+        yield here.within(node, "args", [args[1]], "loop", 1.25)
+        for name in inner:
+            load = ast.Name(name, ast.Load())
+            yield here.within(node, "args", [load, *args[1:]], "loop", 1.25)
+            yield here.within(node, "args", [plus(load, 1), *args[1:]], "loop", 1.25)
+
+
+def _other_way(here: Here) -> Iterator[ProgramEdit]:
+    """A loop from the last to the first, or from the first to the last."""
+    args = here.node.args
+    first, last = (args[0], args[1]) if len(args) > 1 else (number(0), args[0])
+    if len(args) == 3 and ast.unparse(args[2]) == "-1":
+        forward = [plus(last, 1), plus(first, 1)]
+        forward = forward[1:] if ast.unparse(forward[0]) == "0" else forward
+        yield here.within(here.node, "args", forward, "direction", 1.1)
+    elif len(args) < 3:
+        back = [plus(last, -1), plus(first, -1), number(-1)]
+        yield here.within(here.node, "args", back, "direction", 1.1)

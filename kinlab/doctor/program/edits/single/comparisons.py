@@ -1,0 +1,60 @@
+"""Conditions of a program otherwise."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+
+from kinlab.doctor.program.places import Here, ProgramEdit
+
+_OPPOSITE: dict[type[ast.cmpop], type[ast.cmpop]] = {
+    ast.Eq: ast.NotEq,
+    ast.NotEq: ast.Eq,
+    ast.Lt: ast.GtE,
+    ast.GtE: ast.Lt,
+    ast.Gt: ast.LtE,
+    ast.LtE: ast.Gt,
+    ast.In: ast.NotIn,
+    ast.NotIn: ast.In,
+    ast.Is: ast.IsNot,
+    ast.IsNot: ast.Is,
+}
+
+
+def of_comparison(here: Here) -> Iterator[ProgramEdit]:
+    node = here.node
+    if len(node.ops) != 1:
+        return
+    pairs = {ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt}
+    other = pairs.get(type(node.ops[0]))
+    if other is not None:
+        yield here.within(node, "ops", [other()], "condition", 1.15)
+    if isinstance(node.ops[0], ast.Eq | ast.NotEq | ast.Lt | ast.Gt):
+        opposite = {ast.Eq: ast.NotEq, ast.NotEq: ast.Eq, ast.Lt: ast.Gt, ast.Gt: ast.Lt}
+        new = opposite[type(node.ops[0])]()
+        yield here.within(node, "ops", [new], "condition", 1.2)
+    if isinstance(node.ops[0], ast.Eq | ast.LtE | ast.GtE):
+        for new in (ast.Eq(), ast.LtE(), ast.GtE()):
+            if type(new) is not type(node.ops[0]):
+                yield here.within(node, "ops", [new], "condition", 1.12)
+
+
+def of_comparisons(here: Here) -> Iterator[ProgramEdit]:
+    """All comparisons of a condition otherwise, or ``and`` for ``or``."""
+    node = here.node
+    other = ast.Or() if isinstance(node.op, ast.And) else ast.And()
+    yield here.within(node, "op", other, "condition", 1.15)
+    own = [one for one in node.values if isinstance(one, ast.Compare) and len(one.ops) == 1]
+    kinds = {type(one.ops[0]) for one in own}
+    if len(own) == len(node.values) and len(kinds) == 1:
+        for new in (ast.Eq(), ast.LtE(), ast.GtE(), ast.Lt(), ast.Gt()):
+            if type(new) not in kinds:
+                values = [ast.Compare(one.left, [new], one.comparators) for one in own]
+                yield here.within(node, "values", values, "condition", 1.08)
+
+
+def negated(test: ast.expr) -> ast.expr:
+    """The opposite condition."""
+    if isinstance(test, ast.Compare) and len(test.ops) == 1 and type(test.ops[0]) in _OPPOSITE:
+        return ast.Compare(test.left, [_OPPOSITE[type(test.ops[0])]()], test.comparators)
+    return ast.UnaryOp(ast.Not(), test)

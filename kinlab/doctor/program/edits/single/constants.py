@@ -1,0 +1,57 @@
+"""Numbers in the text of a program otherwise."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+
+from kinlab.doctor.program.edits.numbers.data import measured
+from kinlab.doctor.program.edits.scope import PI, Scope
+from kinlab.doctor.program.edits.single.whole import SIZES
+from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, called, number
+
+POWER, OF_A_NUMBER = 1.08, 1.25
+"""Cost of another power, and of one of a number, which nobody means: ``0.25**2``."""
+OF_RODS = {3: 12, 12: 3}
+"""A rod's moments of inertia about its end, and about its middle, are its mass by these."""
+
+
+def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
+    value = here.node.value
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return
+    if isinstance(here.parent, ast.Call) and called(here.parent) not in SIZES and value:
+        yield here.within(here.node, "value", 0, "number", 1.12)
+    if index:
+        if isinstance(here.parent, ast.Slice):
+            for step in (1, -1):
+                yield here.within(here.node, "value", value + step, "index", 1.15)
+        return
+    given = here.parent if isinstance(here.parent, ast.Call) else None
+    own = given is not None and isinstance(given.func, ast.Name)
+    own = own and given is not None and called(given) not in (*SIZES, *ANGLES)
+    if value == 0 and scope.has_numpy and (own or measured(here.parent)):
+        half: ast.expr = ast.BinOp(PI, ast.Div(), number(2))
+        for turned in (half, ast.UnaryOp(ast.USub(), half)):
+            yield here.instead(turned, "number", 1.13)
+    if (
+        isinstance(value, int)
+        and value in OF_RODS
+        and isinstance(getattr(here.parent, "op", None), ast.Div)
+    ):
+        yield here.within(here.node, "value", OF_RODS[value], "number", 1.05)
+    if given is not None and called(given) == "append" and value in (0, 1):
+        yield here.within(here.node, "value", type(value)(1 - value), "number", 1.05)
+    for factor in (2, 0.5, 3, 1 / 3, 4, 0.25):
+        new = value * factor
+        new = int(new) if new == int(new) else new
+        yield here.within(here.node, "value", new, "factor", 1.15)
+    if isinstance(value, int) or value in (0.0, 1.0):
+        for new in (value + 1, value - 1):
+            power = isinstance(here.parent, ast.BinOp) and isinstance(here.parent.op, ast.Pow)
+            kind = "power" if power else "number"
+            cost = POWER if power else 1.18
+            if power and isinstance(getattr(here.parent, "left", None), ast.Constant):
+                cost = OF_A_NUMBER
+            if not power or new != 1:  # what has none is typed without
+                yield here.within(here.node, "value", new, kind, cost)

@@ -1,0 +1,180 @@
+"""Entries of arrays and lists otherwise: another index, other rows, what is written elsewhere."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Sequence
+from itertools import permutations
+from typing import Any
+
+from kinlab.doctor.bytecode.syntax import copied, nodes
+from kinlab.doctor.program.edits.scope import Scope, statement_of
+from kinlab.doctor.program.edits.single.rows import swapped_in
+from kinlab.doctor.program.edits.single.whole import plus, shifted, value_of, whole_constant
+from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.places import Here, ProgramEdit, number
+
+_FEW = 8
+"""Keys among which a wrong one is looked for early."""
+_LONGEST = 6
+"""Entries of a list of which any two may have been exchanged."""
+_THREE = 3
+"""Indices of which any order is tried."""
+_BESIDE = 1.06
+"""Cost of an index that another row has in the same line."""
+
+
+def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
+    node = here.node
+    shape = observed.shape(node.value)
+    if isinstance(node.slice, ast.Constant) and isinstance(node.slice.value, str):
+        yield from _of_key(here, node.slice, scope)
+        return
+    if _is_stacked(node):
+        if isinstance(node.slice, ast.Tuple) and len(node.slice.elts) <= _LONGEST:
+            yield from swapped_in(here, node.slice, observed)
+        return
+    keys = keys_of(node)
+    if isinstance(node.slice, ast.Slice) and isinstance(node.ctx, ast.Load):
+        yield here.instead(node.value, "index", 1.1)
+    yield from of_keys(here, node, 1.1)
+    yield from _other_slices(here)
+    yield from _in_another_order(here)
+    for name in sorted(scope.unused) if isinstance(node.ctx, ast.Load) else ():
+        if scope.shapes.get(name) == observed.shape(node):
+            yield here.instead(ast.Name(name, ast.Load()), "name", 1.05)
+    beside = _keys_beside(here)
+    for k, (holder, field, key) in enumerate(keys):
+        size = shape[k] if shape is not None and k < len(shape) else 0
+        if whole_constant(key):
+            for other in range(-1, max(size, 4 if not size else 0)):
+                if other != value_of(key) and not (other == -1 and size):
+                    near = abs(other - value_of(key)) == 1
+                    yield here.within(holder, field, number(other), "index", 1.05 if near else 1.1)
+            for name in scope.counters:
+                cost = _BESIDE if name in beside else 1.13
+                yield here.within(holder, field, ast.Name(name, ast.Load()), "index", cost)
+        elif not isinstance(key, ast.Constant | ast.Slice):
+            for text, index in beside.items():
+                if text not in _near(key):
+                    yield here.within(holder, field, copied(index), "index", 1.08)
+    _holder, _field, key = keys[0]
+    single = len(keys) == 1 and not isinstance(node.slice, ast.Tuple)
+    if single and shape is not None and len(shape) == 2 and not isinstance(key, ast.Slice):
+        column = ast.Tuple([ast.Slice(None, None, None), key], ast.Load())
+        yield here.within(node, "slice", column, "transposed", 1.15)
+
+
+def _other_slices(here: Here) -> Iterator[ProgramEdit]:
+    """The part of a row that is taken of another one in the same line."""
+    line = next(one for one in reversed(here.above) if isinstance(one, ast.stmt))
+    known = {ast.dump(one): one for one in nodes(line) if isinstance(one, ast.Slice)}
+    for holder, field, key in keys_of(here.node):
+        for text, other in known.items() if isinstance(key, ast.Slice) else ():
+            if text != ast.dump(key):
+                yield here.within(holder, field, copied(other), "index", 1.09)
+
+
+def _keys_beside(here: Here) -> dict[str, ast.expr]:
+    """The indices that rows have in the same line, and that are counted: ``i``, ``j + 1``."""
+    line = nodes(statement_of(here.above))
+    rows = [one for one in line if isinstance(one, ast.Subscript) and not _is_stacked(one)]
+    keys = [key for one in rows for _holder, _field, key in keys_of(one)]
+    return {ast.unparse(one): one for one in keys if isinstance(one, ast.Name) or shifted(one)}
+
+
+def _is_stacked(node: ast.Subscript) -> bool:
+    """Whether it is ``np.r_[a, b]``, whose entries are no indices."""
+    return getattr(node.value, "attr", "") in ("r_", "c_")
+
+
+def _near(key: ast.expr) -> set[str]:
+    """What is tried in place of an index all the same: itself, one more, one less."""
+    return {ast.unparse(one) for one in (key, plus(key, 1), plus(key, -1))}
+
+
+def _in_another_order(here: Here) -> Iterator[ProgramEdit]:
+    """The indices of ``D[k][i, j]``, and of ``D[k][i][j]``, in another order."""
+    chain = [here.node]
+    while isinstance(chain[0].value, ast.Subscript):
+        chain.insert(0, chain[0].value)
+    if len(chain) < 2 or isinstance(here.parent, ast.Subscript):
+        return
+    keys = [key for one in chain for _holder, _field, key in keys_of(one)]
+    plain = all(isinstance(key, ast.Name) or whole_constant(key) for key in keys)
+    if not plain or len(keys) > _THREE:
+        return
+    for order in [*permutations(keys)][1:]:
+        if [*map(ast.dump, order)] != [*map(ast.dump, keys)]:
+            new, left = chain[0].value, [*order]
+            for one in chain:
+                count = len(keys_of(one))
+                new, left = ast.Subscript(new, _key(left[:count]), one.ctx), left[count:]
+            yield here.instead(new, "index", 1.12)
+
+
+def _key(keys: Sequence[ast.expr]) -> ast.expr:
+    return keys[0] if len(keys) == 1 else ast.Tuple([*keys], ast.Load())
+
+
+def _of_key(here: Here, key: ast.Constant, scope: Scope) -> Iterator[ProgramEdit]:
+    """Another key of a dictionary: ``arm["r"]`` for ``arm["l"]``."""
+    own, cost = str(key.value), 1.05 if len(scope.keys) <= _FEW else 1.15
+    for other, shape in scope.keys.items():
+        if other != own and shape == scope.keys.get(own):
+            yield here.within(key, "value", other, "name", cost)
+
+
+def keys_of(node: ast.Subscript) -> list[tuple[Any, Any, ast.expr]]:
+    """The indices of an entry, each with where it hangs."""
+    if isinstance(node.slice, ast.Tuple):
+        return [(node.slice.elts, k, key) for k, key in enumerate(node.slice.elts)]
+    return [(node, "slice", node.slice)]
+
+
+def _moved(here: Here, holder: Any, field: Any, key: ast.Slice) -> Iterator[ProgramEdit]:
+    """All but the first for all but the last, and the other way round."""
+    if key.upper is None and key.lower is not None and ast.unparse(key.lower) == "1":
+        yield here.within(holder, field, ast.Slice(None, number(-1), None), "index", 1.08)
+    elif key.lower is None and key.upper is not None and ast.unparse(key.upper) == "-1":
+        yield here.within(holder, field, ast.Slice(number(1), None, None), "index", 1.08)
+
+
+def _beside(key: ast.Slice) -> ast.Slice | None:
+    """As many rows above, or below the first ones: ``0:3`` for ``3:6``."""
+    if key.lower is None or key.upper is None:
+        return None
+    if not whole_constant(key.lower) or not whole_constant(key.upper):
+        return None
+    first, behind = value_of(key.lower), value_of(key.upper)
+    other = behind if first == 0 else 2 * first - behind
+    return ast.Slice(number(other), number(other + behind - first), None) if other >= 0 else None
+
+
+def of_keys(here: Here, node: ast.Subscript, cost: float) -> Iterator[ProgramEdit]:
+    """Other rows, and indices in another order: of what is read, or where a value is put."""
+    for holder, field, key in keys_of(node):
+        if isinstance(key, ast.Slice) and key.step is None:
+            if key.lower is None and key.upper is not None:
+                yield here.within(holder, field, ast.Slice(key.upper, None, None), "rows", cost)
+            elif key.upper is None and key.lower is not None:
+                yield here.within(holder, field, ast.Slice(None, key.lower, None), "rows", cost)
+            elif (moved := _beside(key)) is not None:
+                yield here.within(holder, field, moved, "rows", cost)
+            ends = (key.lower, key.upper)
+            yield from _moved(here, holder, field, key)
+            if ends[0] is None and ends[1] is not None and shifted(ends[1]):
+                above = ast.Slice(plus(ends[1], -1), None, None)
+                yield here.within(holder, field, above, "index", 1.15)
+            elif ends[1] is None and isinstance(ends[0], ast.Name):
+                below = ast.Slice(None, plus(ends[0], 1), None)
+                yield here.within(holder, field, below, "index", 1.15)
+    keys = node.slice.elts if isinstance(node.slice, ast.Tuple) else []
+    if len(keys) == 2:
+        swapped = ast.Tuple([keys[1], keys[0]], ast.Load())
+        yield here.within(node, "slice", swapped, "transposed", cost)
+    if len(keys) == _THREE and len({ast.dump(key) for key in keys}) > 1:
+        for order in [*permutations(range(_THREE))][1:]:
+            other = ast.Tuple([keys[k] for k in order], ast.Load())
+            if ast.dump(other) != ast.dump(node.slice):
+                yield here.within(node, "slice", other, "index", 1.12)

@@ -1,0 +1,120 @@
+"""Names and attributes of a program otherwise."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+
+from kinlab.doctor.bytecode.syntax import factors
+from kinlab.doctor.program.edits.scope import PI, Scope, Turned, statement_of
+from kinlab.doctor.program.edits.single.constants import OF_RODS
+from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.places import Here, ProgramEdit
+
+_FEW = 8
+"""Attributes among which a wrong one is looked for early."""
+_OF_ITS_MASS = 0.015
+"""What it costs less where the mass of its link stands beside it."""
+_OF_ROD = 0.04
+"""What that costs more in a rod's moment of inertia, whose number is as soon mistaken."""
+_HALF = 1.03
+"""Cost of a length for the distance of the centre, where that is half of it, or that for it."""
+_IN_LINE = 1.12
+"""Cost of a name for another that stands in the same line."""
+
+
+def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterator[ProgramEdit]:
+    node = here.node
+    shape = observed.shape(node)
+    if shape is None:
+        return
+    if index:
+        for other in scope.whole:
+            if other != node.id:
+                yield here.instead(ast.Name(other, ast.Load()), "index", 1.12)
+        return
+    if node.id in scope.arcs and scope.has_numpy:
+        yield here.instead(ast.BinOp(PI, ast.Sub(), node), "argument", 1.12)
+    across = Turned(scope.shapes).visit_Name(node).id
+    for other, known in scope.shapes.items():
+        if other != node.id and known == shape and other not in scope.counters:
+            near = _alike(other, node.id)
+            kind = "index" if near and _letters(other) == _letters(node.id) else "name"
+            beside = other in scope.beside.get(node.id, ())
+            cost = 1.1 if near else 1.14 if beside else 1.25
+            if cost > _IN_LINE and other in scope.names_in(statement_of(here.above)):
+                cost = _IN_LINE  # of what stands in one line one is taken for another
+            if scope.are_halves(other, node.id):
+                cost = _HALF + _OF_ROD * _in_a_rods_moment(here)
+                cost -= _OF_ITS_MASS * _is_of_the_mass(here, other)
+            if other == across and {other, node.id} <= scope.sines:
+                kind, cost = "sin/cos", 1.04
+            yield here.instead(ast.Name(other, ast.Load()), kind, cost)
+    if shape and not isinstance(here.parent, ast.Subscript | ast.Attribute):
+        for text, entry in scope.simple(shape):  # an entry of a list by a counter
+            if isinstance(entry, ast.Subscript) and text != node.id:
+                yield here.instead(entry, "name", 1.2)
+    if isinstance(here.parent, ast.Subscript) and here.field == "value" and shape:
+        for other, entries in scope.lists.items():
+            if other != node.id and entries == shape[1:] and scope.shapes.get(other) != shape:
+                cost = 1.15 if _alike(other, node.id) else 1.2
+                yield here.instead(ast.Name(other, ast.Load()), "name", cost)
+
+
+def _is_of_the_mass(here: Here, name: str) -> bool:
+    """Whether a name has the number of a mass that it is multiplied with: ``m2*l1*lc2``."""
+    product: ast.expr = here.node
+    for above in reversed(here.above):
+        if not isinstance(above, ast.BinOp) or not isinstance(above.op, ast.Mult):
+            break
+        product = above
+    parts = (x.operand if isinstance(x, ast.UnaryOp) else x for x in factors(product))
+    masses = (x.id for x in parts if isinstance(x, ast.Name) and x.id[0] in "mM")
+    own = name[len(_letters(name)) :]
+    return own != "" and any(one[len(_letters(one)) :] == own for one in masses)
+
+
+def _in_a_rods_moment(here: Here) -> bool:
+    """Whether it stands in ``m*l**2/12`` or in ``m*l**2/3``."""
+    divided = (one for one in here.above if isinstance(one, ast.BinOp))
+    below = (one.right for one in divided if isinstance(one.op, ast.Div))
+    return any(isinstance(one, ast.Constant) and one.value in OF_RODS for one in below)
+
+
+def _letters(name: str) -> str:
+    return name.rstrip("0123456789")
+
+
+def _alike(one: str, other: str) -> bool:
+    """Names that are easily mistaken: of one first letter, or of one number."""
+    same = one[0].lower() == other[0].lower() or _letters(one)[-1:] == _letters(other)[-1:]
+    return same or one[len(_letters(one)) :] == other[len(_letters(other)) :] != ""
+
+
+def of_attribute(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
+    """Another attribute of the same object: ``arm.r`` for ``arm.l``."""
+    node = here.node
+    shape = observed.shape(node)
+    if shape is None:
+        return
+    for one, other in (("real", "imag"), ("imag", "real")):
+        if node.attr == one:
+            yield here.within(node, "attr", other, "function", 1.05)
+    if not isinstance(node.value, ast.Name | ast.Subscript | ast.Attribute):
+        return
+    product = isinstance(getattr(here.parent, "op", None), ast.MatMult)
+    for other, known in scope.attributes.items():
+        if other != node.attr and known == shape:
+            cost = 1.07 if _alike(other, node.attr) else 1.15
+            cost = 1.05 if len(scope.attributes) <= _FEW else cost
+            yield here.within(node, "attr", other, "name", cost)
+        elif other != node.attr and product:
+            yield here.within(node, "attr", other, "name", 1.15)
+    for _text, piece in scope.simple(shape):
+        if isinstance(piece, ast.Attribute) and ast.dump(piece.value) != ast.dump(node.value):
+            cost = 1.12 if piece.attr == node.attr else 1.15  # of another object
+            yield here.instead(piece, "name", cost)
+    for other, known in scope.shapes.items():
+        if known == shape and other not in scope.counters and shape == ():
+            cost = 1.2 if other[:1].lower() == node.attr[:1].lower() else 1.25
+            yield here.instead(ast.Name(other, ast.Load()), "name", cost)

@@ -1,0 +1,200 @@
+"""Sums, products and signs of a program otherwise."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from itertools import permutations
+
+from kinlab.doctor.program.edits import chains
+from kinlab.doctor.program.edits.single.constants import OF_A_NUMBER, POWER
+from kinlab.doctor.program.edits.single.rows import FLAT
+from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.places import Here, ProgramEdit, called, number
+
+_THREE = 3
+"""Factors from which on the rest of a product stays."""
+_PAIR = 2
+"""Sides of a matrix, factors that change places, arguments with a diagonal."""
+_HALVES, _TYPED = (2, 0.5), 1.045
+"""Factors that stand in front, and the cost of one that does not belong there."""
+DIAGONALS = ("tril", "triu", "eye", "diag")
+"""Functions whose last argument is the number of a diagonal."""
+
+
+def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[ProgramEdit]:
+    node = here.node
+    left, right, op = node.left, node.right, node.op
+    if isinstance(op, ast.Add | ast.Sub):
+        other = ast.Sub() if isinstance(op, ast.Add) else ast.Add()
+        kind = "index" if index else "sign"
+        yield here.within(node, "op", other, kind, 1.1 if index else 0.98)
+        extra = "index" if index else "extra term"
+        yield here.instead(left, extra, 1.08)
+        alone = right if isinstance(op, ast.Add) else ast.UnaryOp(ast.USub(), right)
+        yield here.instead(alone, extra, 1.1)
+        if index:
+            return
+        for new in chains.together(node):
+            yield here.instead(new, "parentheses", 1.09)
+        for new in chains.multiplied(node):
+            yield here.instead(new, "operator", 1.12)
+        if all(len(observed.shape(side) or ()) == 2 for side in (left, right)):
+            yield here.within(node, "op", ast.MatMult(), "operator", 1.12)
+        for new in chains.squared(node):
+            yield here.instead(new, "parentheses", 1.13)
+        factor = isinstance(here.parent, ast.BinOp) and not isinstance(here.parent.op, ast.Pow)
+        if factor and observed.shape(node) == ():
+            yield here.instead(ast.BinOp(node, ast.Pow(), number(2)), "power", 1.12)
+        for new in chains.crosswise(node):
+            yield here.instead(new, "names exchanged", 1.13)
+        for new in chains.called_once(node):
+            yield here.instead(new, "parentheses", 1.14)
+        for side, inner in (("left", left), ("right", right)):
+            if isinstance(inner, ast.Call) and side == "left" and len(inner.args) == 1:
+                into = ast.Call(inner.func, [ast.BinOp(inner.args[0], op, right)], inner.keywords)
+                yield here.instead(into, "parentheses", 1.15)
+        if isinstance(left, ast.BinOp) and isinstance(left.op, ast.Sub) and isinstance(op, ast.Add):
+            # a - b + c for a - (b + c)
+            rest = ast.BinOp(left.right, op, right)
+            yield here.instead(ast.BinOp(left.left, left.op, rest), "parentheses", 1.2)
+    elif isinstance(op, chains.PRODUCTS):
+        for outer, sum_, name in ((left, right, "right"), (right, left, "left")):
+            if isinstance(sum_, ast.BinOp) and isinstance(sum_.op, ast.Add | ast.Sub):
+                # a*(b + c) for a*b + c
+                one, last = sum_.left, sum_.right
+                if name == "right":
+                    opened = ast.BinOp(ast.BinOp(outer, op, one), sum_.op, last)
+                else:
+                    opened = ast.BinOp(one, sum_.op, ast.BinOp(last, op, outer))
+                yield here.instead(opened, "parentheses", 1.15)
+        matrices = [observed.shape(side) for side in (left, right)]
+        for kept, left_out, cost in ((left, matrices[1], 1.15), (right, matrices[0], 1.17)):
+            alone = observed.shape(kept) == () and bool(left_out)
+            undone = kept is right and _turns_back(left, right)
+            cost = 1.02 if undone else cost + FLAT * alone
+            typed = kept is right and getattr(left, "value", 0) in _HALVES
+            yield here.instead(kept, "extra factor", _TYPED if typed else cost)
+        if isinstance(op, ast.MatMult):
+            yield here.instead(ast.BinOp(right, op, left), "order", 1.06)
+            sizes = observed.shape(node) or (0,)
+            twice = _halved(node) if len(sizes) == _PAIR and sizes[0] == sizes[1] else None
+            if twice is not None:  # A + A.T for 2*A
+                both = ast.BinOp(twice, ast.Add(), ast.Attribute(twice, "T", ast.Load()))
+                yield here.instead(both, "transposed", 1.0)
+            yield from _in_turn(here)
+            if isinstance(left, ast.BinOp) and isinstance(left.op, ast.MatMult):
+                last = ast.BinOp(ast.BinOp(left.left, op, right), left.op, left.right)
+                yield here.instead(last, "order", 1.07)
+            yield from _turned(here)
+            inner = left.args[0] if isinstance(left, ast.Call) and len(left.args) == 1 else None
+            if inner is not None and observed.shape(inner) == matrices[1] is not None:
+                crossed = ast.Call(left.func, [right], left.keywords)  # skew(a) @ b
+                yield here.instead(ast.BinOp(crossed, op, inner), "order", 1.03)
+        elif isinstance(op, ast.Mult):
+            if isinstance(right, ast.BinOp) and isinstance(right.op, ast.Pow):
+                squared = ast.BinOp(ast.BinOp(left, op, right.left), right.op, right.right)
+                yield here.instead(squared, "parentheses", 1.12)
+            yield here.within(node, "op", ast.Div(), "factor", 1.35)
+            if all(shape for shape in matrices):
+                yield here.within(node, "op", ast.MatMult(), "product", 1.1)
+            if matrices[0] == matrices[1] and matrices[0]:
+                for other in (ast.Add(), ast.Sub()):
+                    yield here.within(node, "op", other, "operator", 1.16)
+            square = matrices[1] is not None and len(matrices[1]) == 2
+            if square and isinstance(left, ast.Constant) and left.value == 2:
+                across = ast.Attribute(right, "T", ast.Load())
+                yield here.instead(ast.BinOp(right, ast.Add(), across), "transposed", 1.08)
+            if not (
+                isinstance(here.parent, ast.BinOp) and isinstance(here.parent.op, chains.PRODUCTS)
+            ):
+                for new in chains.added(node):
+                    yield here.instead(new, "operator", 1.16)
+            if isinstance(left, ast.BinOp) and isinstance(left.op, ast.Div):
+                below = ast.BinOp(left.right, ast.Mult(), right)
+                yield here.instead(ast.BinOp(left.left, ast.Div(), below), "parentheses", 1.2)
+        else:
+            yield here.within(node, "op", ast.Mult(), "factor", 1.3)
+            yield here.instead(ast.BinOp(right, ast.Div(), left), "order", 1.3)
+            if isinstance(left, ast.BinOp) and isinstance(left.op, ast.Add | ast.Sub):
+                # (a + b)/c for a + b/c
+                tail = ast.BinOp(left.right, ast.Div(), right)
+                yield here.instead(ast.BinOp(left.left, left.op, tail), "parentheses", 1.25)
+    elif isinstance(op, ast.Pow):
+        cost = OF_A_NUMBER if isinstance(left, ast.Constant) else POWER
+        yield here.instead(left, "power", cost)
+        if isinstance(left, ast.BinOp) and isinstance(left.op, ast.Add):
+            each = [ast.BinOp(one, op, right) for one in (left.left, left.right)]
+            yield here.instead(ast.BinOp(each[0], left.op, each[1]), "parentheses", 1.15)
+        if isinstance(left, ast.BinOp) and isinstance(left.op, ast.Mult):
+            last = ast.BinOp(left.right, op, right)
+            yield here.instead(ast.BinOp(left.left, left.op, last), "parentheses", 1.12)
+    elif isinstance(op, ast.FloorDiv) and not index:
+        yield here.within(node, "op", ast.Div(), "whole division", 0.97)
+
+
+def _halved(product: ast.expr) -> ast.expr | None:
+    """A product of matrices without the 2 that it begins with: ``A @ B`` of ``2*A @ B``."""
+    if not isinstance(product, ast.BinOp):
+        return None
+    if isinstance(product.op, ast.Mult):
+        return product.right if getattr(product.left, "value", 0) == 2 else None
+    rest = _halved(product.left) if isinstance(product.op, ast.MatMult) else None
+    return None if rest is None else ast.BinOp(rest, product.op, product.right)
+
+
+def _turns_back(matrix: ast.expr, product: ast.expr) -> bool:
+    """Whether a matrix stands before its own transpose: ``R.T @ (R @ v)``."""
+    while isinstance(product, ast.BinOp) and isinstance(product.op, ast.MatMult):
+        product = product.left
+    one, other = ast.unparse(matrix), ast.unparse(product)
+    return one == f"{other}.T" or other == f"{one}.T"
+
+
+def _in_turn(here: Here) -> Iterator[ProgramEdit]:
+    """A product of several matrices from another one on, from the last to the first, or with one
+    of them further on or further back."""
+    parent = here.parent
+    if isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.MatMult):
+        return
+    every = chains.members(chains.chain(here.node, (ast.MatMult,)))
+    if len(every) > _PAIR:
+        orders = [[*every[k:], *every[:k]] for k in range(1, len(every))]
+        for k, to in permutations(range(len(every)), _PAIR):
+            if 1 < abs(k - to) < len(every) - 1:  # others are of those above
+                rest = [*every[:k], *every[k + 1 :]]
+                orders.append([*rest[:to], every[k], *rest[to:]])
+        for first, *others in (*orders, every[::-1]):
+            by = [(ast.MatMult(), one) for one in others]
+            yield here.instead(chains.joined(first, by), "order", 1.1)
+
+
+def _turned(here: Here) -> Iterator[ProgramEdit]:
+    """R I R.T for R.T I R."""
+    parent = here.parent
+    if (
+        isinstance(parent, ast.BinOp)
+        and isinstance(parent.op, ast.MatMult)
+        and here.field == "left"
+    ):
+        return
+    every = chains.members(chains.chain(here.node, (ast.MatMult,)))
+    for k in range(len(every) - _PAIR):
+        first, last = every[k], every[k + _PAIR]
+        if f"{ast.unparse(first)}.T" == ast.unparse(last) or _is_turned_into(last, first):
+            new = [*every[:k], last, every[k + 1], first, *every[k + _THREE :]]
+            by = [(ast.MatMult(), other) for other in new[1:]]
+            yield here.instead(chains.joined(new[0], by), "transposed", 1.03)
+
+
+def _is_turned_into(one: ast.expr, other: ast.expr) -> bool:
+    """Whether one of two matrices is the transpose of the first."""
+    return f"{ast.unparse(one)}.T" == ast.unparse(other)
+
+
+def is_diagonal(here: Here) -> bool:
+    """Whether an argument is the number of a diagonal."""
+    call = here.parent
+    if not isinstance(call, ast.Call) or called(call) not in DIAGONALS or len(call.args) < _PAIR:
+        return False
+    return here.node is call.args[-1]

@@ -1,0 +1,149 @@
+"""Rows of a program otherwise: entries exchanged, moved on, with other signs."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+from typing import Any
+
+from kinlab.doctor.bytecode.syntax import shallow
+from kinlab.doctor.program.edits.numbers.data import moved_on, other_words
+from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.places import Here, ProgramEdit
+
+_LONGEST = 6
+"""Entries of a list of which any two may have been exchanged."""
+_PLACE = 3
+"""Where the 1 stands in what a transform is multiplied with."""
+FLAT = 0.1
+"""What it costs more to take a number for a matrix."""
+_THREE = 3
+"""Sides of a rotation matrix."""
+_PAIR, _NUMBERS = 2, ast.Constant | ast.Name | ast.UnaryOp | ast.Attribute
+"""Entries that are exchanged where they are moved on; what rows of numbers are made of."""
+_HALVED = 1.04
+"""Cost of the halves of a twist, or of a wrench, for one another."""
+
+
+def of_sequence(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
+    elements = here.node.elts
+    if any(isinstance(e, ast.Starred) for e in elements) or len(elements) > _LONGEST:
+        return
+    if isinstance(here.parent, ast.Subscript) and here.field == "slice":
+        return
+    yield from swapped_in(here, here.node, observed)
+    yield from _across(here, elements)
+    yield from _between(here, elements)
+    yield from _signs_of_two(here, elements)
+    turned = [_opposite(one) for one in elements]
+    if sum(one is not old for one, old in zip(turned, elements, strict=True)) >= _PAIR:
+        unpacked = isinstance(here.node, ast.Tuple) and isinstance(here.parent, ast.Assign)
+        yield here.within(here.node, "elts", turned, "sign", 1.25 if unpacked else 1.1)
+    if len(elements) > _PAIR and all(isinstance(one, _NUMBERS) for one in elements):
+        for moved in moved_on(elements):
+            yield here.within(here.node, "elts", moved, "shifted", 1.13)
+    points = [one for one in elements if isinstance(one, ast.Name) and observed.shape(one) == (3,)]
+    if len(points) == len(elements) > _PAIR:  # those of the frames before, of which one is the base
+        base: ast.expr = ast.parse("np.zeros(3)", mode="eval").body
+        yield here.within(here.node, "elts", [base, *elements[:-1]], "shifted", 1.13)
+
+
+def _between(here: Here, rows: Sequence[ast.expr]) -> Iterator[ProgramEdit]:
+    """What two rows, or two calls of one function, have at the same place, for one another."""
+    several = [_members_of(one) for one in rows]
+    if not 1 < len(rows) <= _LONGEST or len({len(one) for one in several}) > 1:
+        return
+    if len({type(one) for one in rows}) > 1 or len({ast.unparse(x.func) for x in rows
+                                                    if isinstance(x, ast.Call)}) > 1:  # fmt: skip
+        return
+    for i, j in combinations(range(len(rows)), 2):
+        for k in range(len(several[0])):
+            one, other = several[i][k], several[j][k]
+            if ast.dump(one) != ast.dump(other):
+                new = [*rows]
+                new[i] = _with_member(rows[i], k, other)
+                new[j] = _with_member(rows[j], k, one)
+                yield here.within(here.node, "elts", new, "entries swapped", 1.13)
+
+
+def _members_of(row: ast.expr) -> list[ast.expr]:
+    """What a row has, or what a call is given."""
+    if isinstance(row, ast.Call):
+        return [*row.args, *(word.value for word in row.keywords)]
+    if isinstance(row, ast.Dict):
+        return row.values
+    return row.elts if isinstance(row, ast.List | ast.Tuple) else []
+
+
+def _with_member(row: Any, k: int, new: ast.expr) -> Any:
+    other = shallow(row)
+    if isinstance(row, ast.Call):
+        other.args = [new if i == k else x for i, x in enumerate(row.args)]
+        count = len(row.args)
+        words = [ast.keyword(x.arg, new if i + count == k else x.value)
+                 for i, x in enumerate(row.keywords)]  # fmt: skip
+        other.keywords = words
+    else:
+        field = "values" if isinstance(row, ast.Dict) else "elts"
+        setattr(other, field, [new if i == k else x for i, x in enumerate(_members_of(row))])
+    return other
+
+
+def _signs_of_two(here: Here, rows: Sequence[ast.expr]) -> Iterator[ProgramEdit]:
+    """Two rows or columns of a rotation matrix with the other sign: a frame is turned over."""
+    entries = [one.elts for one in rows if isinstance(one, ast.List | ast.Tuple)]
+    if len(entries) != len(rows) or {len(rows), *map(len, entries)} != {_THREE}:
+        return
+    for some in combinations(range(_THREE), 2):
+        for columns in (False, True):
+            turned = [
+                ast.List([_opposite(x) if (k if columns else i) in some else x
+                          for k, x in enumerate(row)], ast.Load())
+                for i, row in enumerate(entries)
+            ]  # fmt: skip
+            yield here.within(here.node, "elts", turned, "sign", 1.15)
+
+
+def _across(here: Here, rows: Sequence[ast.expr]) -> Iterator[ProgramEdit]:
+    """What is written as rows, with columns for rows."""
+    entries = [one.elts for one in rows if isinstance(one, ast.List | ast.Tuple)]
+    if len(entries) == len(rows) > 1 and all(len(one) == len(rows) for one in entries):
+        columns = [ast.List([*one], ast.Load()) for one in zip(*entries, strict=True)]
+        if ast.dump(ast.List([*columns])) != ast.dump(ast.List([*rows])):
+            cost = 1.12 if len(rows) == _PAIR else 1.3
+            yield here.within(here.node, "elts", columns, "transposed", cost)
+
+
+def _opposite(node: ast.expr) -> ast.expr:
+    """A number with the other sign; a zero, and what is no single number, as it is."""
+    if isinstance(node, ast.UnaryOp):
+        return node.operand if isinstance(node.op, ast.USub) else node
+    if isinstance(node, ast.List | ast.Tuple) or not getattr(node, "value", 1):
+        return node
+    return ast.UnaryOp(ast.USub(), node)
+
+
+def swapped_in(here: Here, row: ast.List | ast.Tuple, observed: Observed) -> Iterator[ProgramEdit]:
+    """Two entries for one another."""
+    halves = _are_halves(row, observed)
+    for i, j in combinations(range(len(row.elts)), 2):
+        if ast.dump(row.elts[i]) != ast.dump(row.elts[j]):
+            swapped = [*row.elts]
+            swapped[i], swapped[j] = swapped[j], swapped[i]
+            moved = j == _PLACE and getattr(row.elts[j], "value", None) == 1
+            cost = 1.12 + FLAT * moved  # of what is a place, and no direction
+            cost = _HALVED if halves else cost
+            yield here.within(row, "elts", swapped, "entries swapped", cost)
+
+
+def _are_halves(row: ast.List | ast.Tuple, observed: Observed) -> bool:
+    """Whether two vectors stand one behind the other: a twist, the angular half and the linear."""
+    shapes = [observed.shape(one) for one in row.elts]
+    return len(shapes) == _PAIR and shapes[0] == shapes[1] and len(shapes[0] or ()) == 1
+
+
+def of_letters(here: Here) -> Iterator[ProgramEdit]:
+    """The kinds of joints in the order of a word, ``"RRPR"``: two for one another, or one other."""
+    for word, kind, cost in other_words(here.node.value):
+        yield here.within(here.node, "value", word, kind, cost)
