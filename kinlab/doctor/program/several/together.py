@@ -47,7 +47,7 @@ _THREE, _KEPT = 600, 6_000_000
 """Edits of which any three may go together, fewer where their pairs have more numbers."""
 _TRIED = 2000
 """Threes that are run, of each way to tell them."""
-_ALL, _LEAST = 85_000_000, 60_000_000
+_ALL, _LEAST = 170_000_000, 120_000_000
 """Work that may be done for single edits and those tried together; the least for these."""
 _LIKELY, _PRODUCT = 300, 600_000
 """Edits of which any three are run together, the product of whose ranks is no larger."""
