@@ -66,6 +66,7 @@ KINDS: dict[str, str] = {
     N_("parallel-axis term"): N_("the parallel-axis term is left out"),
     N_("loop"): N_("a loop begins or ends at another link"),
     N_("direction"): N_("a loop runs the other way"),
+    N_("products' signs"): N_("products of inertia have the other sign"),
     N_("gyroscopic term"): N_("the gyroscopic term is left out"),
     N_("rotor inertia"): N_("the rotors' inertia is left out"),
     N_("mass"): N_("a mass is counted otherwise"),

@@ -63,6 +63,7 @@ _WHAT = {
     "order of lines": N_("what the line uses is updated too early, or too late"),
     "loop": N_("the loop leaves one out, or takes one too many"),
     "direction": N_("the loop runs the other way"),
+    "products' signs": N_("the products of inertia have the other sign"),
     "condition": N_("the condition is wrong"),
     "entries swapped": N_("two entries are exchanged"),
     "rows": N_("the rows are others: the linear ones, or the angular"),
@@ -453,9 +454,21 @@ def _flat(new: str, old: str) -> str:
         tree, before = ast.parse(new), ast.parse(old)
     except SyntaxError:  # the head of a loop
         return new
-    if any(map(_in_front, nodes(before))) or not any(map(_in_front, nodes(tree))):
+    if any(map(_is_odd, nodes(before))) or not any(map(_is_odd, nodes(tree))):
         return new
     return _text(_Flat().visit(tree).body[0])
+
+
+def _is_odd(node: ast.AST) -> bool:
+    return _in_front(node) or _is_signed_twice(node)
+
+
+def _is_signed_twice(node: ast.AST) -> bool:
+    """Whether something that begins with a minus is added, or subtracted: ``a - -b*c``."""
+    if not isinstance(node, ast.BinOp) or not isinstance(node.op, ast.Add | ast.Sub):
+        return False
+    first = factors(node.right)[0]
+    return isinstance(first, ast.UnaryOp) and isinstance(first.op, ast.USub)
 
 
 def _in_front(node: ast.AST) -> bool:
@@ -483,6 +496,14 @@ class _Flat(ast.NodeTransformer):
 
     def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
         self.generic_visit(node)
+        if _is_signed_twice(node):
+            first, *rest = factors(node.right)
+            assert isinstance(first, ast.UnaryOp)
+            bare = first.operand
+            for one in rest:
+                bare = ast.BinOp(bare, ast.Mult(), one)
+            other = ast.Sub() if isinstance(node.op, ast.Add) else ast.Add()
+            return ast.BinOp(node.left, other, bare)
         if not _in_front(node):
             return node
         first, *rest = factors(node.right)

@@ -33,6 +33,8 @@ _BESIDE = 0.04
 """The same of a term that stands in the line beside, of what is called alike."""
 _FEW_MASSES = 2
 """Masses of which a sum is tried anyway."""
+_TWIST = 6
+"""Rows of a Jacobian, or of a twist."""
 _NEXT_ANGLE = 1.08
 """Cost of the angle of the joint before, or next, in a sum: c12 for c2."""
 _DIVIDED = 1.07
@@ -52,7 +54,8 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     row = len(shape) == 1 and isinstance(node, ast.Name) and scope.has_numpy
     if row and not isinstance(parent, ast.Subscript | ast.BinOp | ast.Attribute):
         total = ast.Attribute(ast.Name("np", ast.Load()), "cumsum", ast.Load())
-        yield here.instead(ast.Call(total, [node], []), "function", 1.1)
+        cost = 1.14 if isinstance(parent, ast.Call) else 1.1
+        yield here.instead(ast.Call(total, [node], []), "function", cost)
     for term in _in_the_other_case(here) if zero else ():
         if scope.observed.shape(term) == ():
             yield here.instead(copied(term), "number", 1.06)
@@ -179,6 +182,8 @@ def _matrices(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         yield here.instead(ast.Attribute(node, "T", ast.Load()), "transposed", cost)
     if isinstance(here.parent, ast.Subscript) and here.field == "value" and len(shape) > 2:
         return
+    if isinstance(here.parent, ast.Return) and shape[0] == _TWIST and isinstance(node, ast.Name):
+        yield here.instead(_other_half_first(node), "order", 1.1)
     if isinstance(node, ast.Name) and len(shape) > 2:
         return
     beside = scope.factors.get(id(statement_of(here.above)), set())
@@ -197,6 +202,12 @@ def _matrices(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
                     new = ast.BinOp(node, ast.MatMult(), turned)
                     yield here.instead(new, "missing matrix", cost)
                 cost += 0.02
+
+
+def _other_half_first(node: ast.Name) -> ast.expr:
+    """The angular rows first, or the linear ones."""
+    text = f"np.concatenate([{node.id}[3:], {node.id}[:3]])"
+    return ast.parse(text, mode="eval").body
 
 
 def _angle(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

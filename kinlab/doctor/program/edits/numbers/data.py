@@ -276,8 +276,10 @@ def _whole(value: Any) -> Iterator[tuple[Any, str]]:
         if not (value > 0).all():  # lengths and masses
             yield -value, "sign"
         yield np.radians(value), "degrees"
-        if value.ndim == 2:
+        if value.ndim == _PAIR:
             yield value.T, "transposed"
+            if np.array_equal(value, value.T) and value.any():
+                yield 2 * np.diag(np.diagonal(value)) - value, "products' signs"
     elif isinstance(value, list | tuple) and all(type(one) in (int, float) for one in value):
         yield type(value)(one * pi / 180 for one in value), "degrees"
 

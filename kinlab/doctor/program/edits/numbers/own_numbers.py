@@ -29,6 +29,8 @@ _TURNED = 0.02
 """What it costs more to put a number in with the other sign."""
 _SUMMED = 0.04
 """The same of a number that is a sum of two, in place of one of these."""
+_OTHER_END = 1.06
+"""Cost of how far a centre is from the joint for how far it is from its frame."""
 _OF_POINTS = 1.14
 """Cost of a point's coordinate for a number."""
 _CONSTANT = 1.06
@@ -56,6 +58,8 @@ def of_own_numbers(
     if table is None:
         return
     kinds, summed = sizes_of(table), _from_the_joint(table)
+    centres = [abs(float(x)) for k in table.links for x in np.ravel(k.com)]
+    turned = {pair for pair in zip(centres, summed, strict=True) if all(pair)}
     weight = float(np.linalg.norm(table.gravity))
     every = [*numbers(trial, observed)]
     given = [abs(float(place.value)) for place in every]
@@ -63,6 +67,9 @@ def of_own_numbers(
         if not isinstance(place.value, float):
             continue
         for value, cost in _meant(place, kinds | {"gravity": [weight]}, summed, given):
+            both = abs(float(place.value)), abs(value)
+            other_end = any(_are(both, pair) or _are(both[::-1], pair) for pair in turned)
+            cost = _OTHER_END if other_end else cost
             yield replace(place.edit(value, "number", cost), of_the_arm=True)
     yield from _of_points(table, every, kinds["length"])
     lengths = kinds["length"][:_MOST]
@@ -86,6 +93,11 @@ def of_own_numbers(
             for here in places(part, tree):
                 yield from _missing(here, observed, lengths)
                 yield from _instead_of_zero(here, trial, left_out)
+
+
+def _are(both: tuple[float, float], pair: tuple[float, float]) -> bool:
+    """Whether two numbers are a pair's."""
+    return all(among(one, [other]) for one, other in zip(both, pair, strict=True))
 
 
 def _without_what_is_constant(
