@@ -448,6 +448,228 @@ def f(q):
     return T
 """
 
+CARRIED = """
+from math import sin, cos
+import numpy as np
+
+g = 9.81
+m3, m4, m5, m6 = 4.25, 1.08, 0.63, 0.51
+z3 = -0.6447
+y4, z4 = 0.0092, -0.0054
+z5 = 0.0566
+z6 = 0.263 + 0.1554
+
+def f(q):
+    s2, c2 = sin(q[1]), cos(q[1])
+    s4, c4 = sin(q[3]), cos(q[3])
+    s5, c5 = sin(q[4]), cos(q[4])
+    d = q[2]
+    mu = m5 * z5 + m6 * z6
+
+    k_2 = -s2 * c5 - c2 * s4 * s5
+    k_4 = -s2 * c4 * s5
+    k_5 = -c2 * s5 - s2 * s4 * c5
+
+    V_2 = -m3 * (d + z3) * s2 - m4 * ((d - y4) * s2 + z4 * c2 * c4) - (m5 + m6) * d * s2 + mu * k_2
+    V_3 = (m3 + m4 + m5 + m6) * c2
+    V_4 = m4 * z4 * s2 * s4 + mu * k_4
+    V_5 = mu * k_5
+    return g * np.array([0, V_2, V_3, V_4, V_5, 0])
+"""
+WORST = """
+import numpy as np
+
+leg = {
+    "l1": np.array([0.30, 0.26]),
+    "l2": np.array([0.50, 0.54]),
+    "base": np.array([[0.12, 0.0], [-0.12, 0.0]]),
+    "mass": np.array([1.0, 0.8]),
+    "com": np.array([0.12, 0.15]),
+    "inertia": np.array([0.0075, 0.0060]),
+    "rotor": np.array([1.0e-5, 1.2e-5]),
+    "gear": np.array([10.0, 12.0]),
+}
+payload = 1.5
+
+def directions(xy, mode):
+    to_tool = xy - leg["base"]
+    D2 = np.einsum("ij,ij->i", to_tool, to_tool)
+    D = np.sqrt(D2)
+    along = (D2 + leg["l1"]**2 - leg["l2"]**2) / (2 * D)
+    across = np.sqrt(leg["l1"]**2 - along**2)
+    ex = to_tool / D[:, None]
+    ey = np.stack([-ex[:, 1], ex[:, 0]], axis=1)
+    elbow = along[:, None] * ex - (np.asarray(mode) * across)[:, None] * ey
+    return elbow / leg["l1"][:, None], (to_tool - elbow) / leg["l2"][:, None]
+
+def f(xy, mode):
+    u, w = directions(xy, mode)
+    triple = u[:, 0] * w[:, 1] - u[:, 1] * w[:, 0]
+    J = w / (leg["l1"] * triple)[:, None]
+    I_A = leg["inertia"] + leg["mass"] * leg["com"]**2 + leg["gear"]**2 * leg["rotor"]
+    G = I_A[:, None] * J + payload * np.linalg.inv(J).T
+    return np.sqrt((G**2).sum(axis=1))
+"""
+ROTORS = """
+import numpy as np
+
+a = [0, 0.4318, 0.0203, 0, 0, 0]
+d = [0, 0, 0.15005, 0.4318, 0, 0]
+sa = [1, 0, -1, 1, -1, 0]
+ca = [0, 1, 0, 0, 0, 1]
+m = [0, 17.4, 4.8, 0.82, 0.34, 0.09]
+r = [[0, 0, 0], [-0.3638, 0.006, 0.2275], [-0.0203, -0.0141, 0.07], [0, 0.019, 0], [0, 0, 0], [0, 0, 0.032]]
+I = [[0, 0, 0], [0.13, 0.524, 0.539], [0.0685, 0.0835, 0.015],
+     [0.0018, 0.0013, 0.0018], [0.0003, 0.0004, 0.0003], [0.00015, 0.00015, 4e-5]]
+Jm = np.array([1.134029969, 2.324814845, 0.576873332, 0.190790626, 0.170706292, 0.194064506])
+
+def f(q, qd):
+    omega = np.zeros(3)
+    vel = np.zeros(3)
+    K = 0.0
+    for i in range(6):
+        c, s = np.cos(q[i]), np.sin(q[i])
+        R = np.array([[c, -s * ca[i], s * sa[i]],
+                      [s, c * ca[i], -c * sa[i]],
+                      [0, sa[i], ca[i]]])
+        p = np.array([a[i], d[i] * sa[i], d[i] * ca[i]])
+        omega = R.T @ (omega + [0, 0, qd[i]])
+        vel = R.T @ vel + np.cross(omega, p)
+        vc = vel + np.cross(omega, r[i])
+        K += 0.5 * m[i] * vc @ vc
+        K += 0.5 * np.sum(I[i] * omega**2)
+    return K + 0.5 * Jm @ qd**2
+"""
+COMPOSITE = """
+import numpy as np
+
+S = np.array([0, 0, 1.0, 0, 0, 0])
+H = np.pi / 2
+DH = [(0, 0, 0.333), (-H, 0, 0), (H, 0, 0.316), (H, 0.0825, 0), (-H, -0.0825, 0.384), (H, 0, 0), (H, 0.088, 0)]
+BODY = np.array([
+    [4.970684, 0.003875, 0.002081, -0.04762, 0.70337, 0.70661, 0.009117, -0.000139, 0.006772, 0.019169],
+    [0.646926, -0.003141, -0.02872, 0.003495, 0.007962, 0.02811, 0.025995, -0.003925, 0.010254, 0.000704],
+    [3.228604, 0.027518, 0.039252, -0.066502, 0.037242, 0.036155, 0.01083, -0.004761, -0.011396, -0.012805],
+    [3.587895, -0.05317, 0.104419, 0.027454, 0.025853, 0.019552, 0.028323, 0.007796, -0.001332, 0.008641],
+    [1.225946, -0.011953, 0.041065, -0.038437, 0.035549, 0.029474, 0.008627, -0.002117, -0.004037, 0.000229],
+    [1.666555, 0.060149, -0.014117, -0.010517, 0.001964, 0.004354, 0.005433, 0.000109, -0.001158, 0.000341],
+    [1.495522, 0.001720874, 0.001360354, 0.100485281, 0.016529854, 0.014107249, 0.006676956, 0.000394892, -0.000706696, -0.001051105],
+])
+
+def crm(v):
+    return np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
+
+def mcI(b):
+    m, C = b[0], crm(b[1:4])
+    xx, yy, zz, xy, xz, yz = b[4:]
+    I = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    return np.block([[I + m * C @ C.T, m * C], [m * C.T, m * np.eye(3)]])
+
+def Xup(al, a, d, th):
+    ca, sa, c, s = np.cos(al), np.sin(al), np.cos(th), np.sin(th)
+    E = np.array([[c, s * ca, s * sa], [-s, c * ca, c * sa], [0, -sa, ca]])
+    r = np.array([a, -d * sa, d * ca])
+    return np.block([[E, np.zeros((3, 3))], [-E @ crm(r), E]])
+
+def f(q):
+    n = len(q)
+    X = [Xup(*row, th) for row, th in zip(DH, q)]
+    Ic = [mcI(b) for b in BODY]
+    M = np.zeros((n, n))
+    for i in range(n - 1, -1, -1):
+        if i > 0:
+            Ic[i - 1] = Ic[i - 1] + X[i].T @ Ic[i] @ X[i]
+        F = Ic[i] @ S
+        M[i, i] = S @ F
+        for j in range(i, 0, -1):
+            F = X[j].T @ F
+            M[i, j - 1] = M[j - 1, i] = S @ F
+    return M
+"""
+PAUL = """
+import numpy as np
+
+def linktran(L, q):
+    alpha, A, D = L[0], L[1], L[3]
+    ct, st = np.cos(q + L[2]), np.sin(q + L[2])
+    ca, sa = np.cos(alpha), np.sin(alpha)
+    return np.array([
+        [ct, -st*ca, st*sa, A*ct],
+        [st, ct*ca, -ct*sa, A*st],
+        [0, sa, ca, D],
+        [0, 0, 0, 1]])
+
+def f(q):
+    dh = [
+        [np.pi/2, 0, 0, 0],
+        [0, 0.4318, 0, 0],
+        [-np.pi/2, 0.0203, 0, 0.15005],
+        [np.pi/2, 0, 0, 0.4318],
+        [-np.pi/2, 0, 0, 0],
+        [0, 0, 0, 0]]
+    n = len(dh)
+    J = np.zeros((6, n))
+    U = np.eye(4)
+    for j in range(n - 1, -1, -1):
+        U = linktran(dh[j], q[j]) @ U
+        d = np.array([-U[0, 0]*U[1, 3] + U[1, 0]*U[0, 3],
+                      -U[0, 1]*U[1, 3] + U[1, 1]*U[0, 3],
+                      -U[0, 2]*U[1, 3] + U[1, 2]*U[0, 3]])
+        delta = U[2, 0:3]
+        J[0:3, j] = d
+        J[3:6, j] = delta
+    return J
+"""
+POINTS_OF_RODS = """
+import numpy as np
+
+ROD_MASS = [3.0, 2.0, 1.0]
+ROD_LENGTH = [0.5, 0.4, 0.25]
+
+def f(q, qdot):
+    energy = 0.0
+    heading, turning = 0.0, 0.0
+    vx, vy = 0.0, 0.0
+    for m, l, qi, wi in zip(ROD_MASS, ROD_LENGTH, q, qdot):
+        heading += qi
+        turning += wi
+        for share, s in ((1 / 6, 0.0), (4 / 6, 0.5), (1 / 6, 1.0)):
+            px = vx - s * l * turning * np.sin(heading)
+            py = vy + s * l * turning * np.cos(heading)
+            energy += 0.5 * share * m * (px**2 + py**2)
+        vx -= l * turning * np.sin(heading)
+        vy += l * turning * np.cos(heading)
+    return energy
+"""
+SPONG = """
+import numpy as np
+
+m1, m2 = 2.0, 1.5
+l1, l2 = 0.5, 0.4
+lc1, lc2 = l1 / 2, l2 / 2
+I1 = m1 * l1**2 / 12
+I2 = m2 * l2**2 / 12
+g = 9.81
+
+def D(q):
+    d11 = m1 * lc1**2 + m2 * (l1**2 + lc2**2 + 2 * l1 * lc2 * np.cos(q[1])) + I1 + I2
+    d12 = m2 * (lc2**2 + l1 * lc2 * np.cos(q[1])) + I2
+    d22 = m2 * lc2**2 + I2
+    return np.array([[d11, d12], [d12, d22]])
+
+def C(q, qd):
+    h = -m2 * l1 * lc2 * np.sin(q[1])
+    return np.array([[h * qd[1], h * qd[1] + h * qd[0]], [-h * qd[0], 0.0]])
+
+def phi(q):
+    phi2 = m2 * lc2 * g * np.cos(q[0] + q[1])
+    phi1 = (m1 * lc1 + m2 * l1) * g * np.cos(q[0]) + phi2
+    return np.array([phi1, phi2])
+
+def f(q, qd, qdd):
+    return D(q) @ qdd + C(q, qd) @ qd + phi(q)
+"""
+
 SLIPS = [
     (
         CHRISTOFFEL,
@@ -574,6 +796,55 @@ SLIPS = [
         ],
         "the angle in a whole line",
     ),
+    (
+        CARRIED,
+        "stanford",
+        "gravity_torques",
+        [("V_3 = (m3 + m4 + m5 + m6) * c2", "V_3 = m3 * c2")],
+        "all the masses that a link carries",
+    ),
+    (
+        WORST,
+        "unequal",
+        "fivebar_torque_per_acceleration_worst",
+        [("return np.sqrt((G**2).sum(axis=1))", "return np.sqrt((G**2).sum(axis=0))")],
+        "the other axis",
+    ),
+    (
+        ROTORS,
+        "puma560",
+        "kinetic_energy",
+        [("return K + 0.5 * Jm @ qd**2", "return K")],
+        "a row that nothing uses",
+    ),
+    (
+        COMPOSITE,
+        "panda",
+        "mass_matrix",
+        [("for j in range(i, 0, -1):", "for j in range(i, 1, -1):")],
+        "a large table",
+    ),
+    (
+        PAUL,
+        "puma560",
+        "jacobian_tool",
+        [("[np.pi/2, 0, 0, 0],", "[90, 0, 0, 0],")],
+        "degrees among radians",
+    ),
+    (
+        POINTS_OF_RODS,
+        "planar3r",
+        "kinetic_energy",
+        [("turning += wi", "turning = wi")],
+        "a sum that forgets",
+    ),
+    (
+        SPONG,
+        "planar2r_rods",
+        "inverse_dynamics",
+        [("h = -m2 * l1 * lc2 * np.sin(q[1])", "h = -m2 * l1 * l2 * np.sin(q[1])")],
+        "the centre of the mass's link",
+    ),
 ]
 
 
@@ -601,3 +872,34 @@ def test_a_diagnosis_may_be_profiled(tmp_path) -> None:
         found, good = asked(wrong, "single_link", "inverse_dynamics", tmp_path / "hand.py")
     assert good, str(found)
     assert any("diagnose" in str(one.code) for one in profile.getstats())
+
+
+TENSORS = """
+import numpy as np
+
+m = [3.0, 2.0, 1.2]
+c = [np.array([0.2, 0.02, -0.01]), np.array([0.15, -0.01, 0.03]), np.array([0.12, 0.03, 0.01])]
+I1, I2 = np.diag([0.02, 0.08, 0.07]), np.diag([0.01, 0.04, 0.045])
+I3 = np.array([[0.004, 0.001, 0], [0.001, 0.012, 0.0005], [0, 0.0005, 0.014]])
+TWISTS = [(0.0, 0.0), (0.45, 0.0), (0.35, np.pi/2)]
+
+def f(q, v):
+    R, p, w, u, energy = np.eye(3), np.zeros(3), np.zeros(3), np.zeros(3), 0.0
+    for (a, al), t, rate, mass, centre, I in zip(TWISTS, q, v, m, c, [I1, I2, I3]):
+        arm = R @ [a, 0, 0]
+        u = u + np.cross(w, arm)
+        ca, sa, ct, st = np.cos(al), np.sin(al), np.cos(t), np.sin(t)
+        R = R @ np.array([[ct, -st, 0], [st*ca, ct*ca, -sa], [st*sa, ct*sa, ca]])
+        w = w + rate*R[:, 2]
+        vc, wb = u + np.cross(w, R @ centre), R.T @ w
+        energy += 0.5*mass*vc @ vc + 0.5*wb @ I @ wb
+    return energy
+"""
+
+
+def test_products_of_inertia_with_the_other_sign_are_told(tmp_path) -> None:
+    slip = ("[[0.004, 0.001, 0], [0.001, 0.012, 0.0005], [0, 0.0005, 0.014]]",
+            "[[0.004, -0.001, 0], [-0.001, 0.012, -0.0005], [0, -0.0005, 0.014]]")  # fmt: skip
+    wrong = with_slips(TENSORS, [slip])
+    found, _good = asked(wrong, "spatial3r", "kinetic_energy", tmp_path / "hand.py")
+    assert "I3, the products of inertia have the other sign" in found.sentence
