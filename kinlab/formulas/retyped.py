@@ -71,7 +71,10 @@ class Typing:
         if self._same_text:
             return text
         goal = _values(text)
-        lines = (*map(_rooted, self._lines(text)), self._retold(text), self._anew(text))
+        whole = [self._retold(text), self._anew(text)]
+        if r"\frac" in self.typed and ")/(" in whole[0]:  # in his fractions
+            whole.reverse()
+        lines = (*map(_rooted, self._lines(text)), *whole)
         return next((line for line in lines if self._reads_as(line, goal)), text)
 
     def piece(self, text: str) -> str:

@@ -283,3 +283,10 @@ def test_a_corrected_formula_is_typed_as_its_writer_does(robot, entry, typed, to
     cause = kl.diagnose(robot, entry, typed).causes[0]
     assert told in cause.sentence
     assert cause.shown[entry] == right
+
+
+def test_a_halved_term_is_none_that_is_missing_twice() -> None:
+    typed = r"\frac{I_{3}}{2} + \frac{l_1 l_3 m_3 c_{23}}{2} + \frac{l_2 l_3 m_3 c_3}{2} + \frac{l_3^2 m_3}{4}"
+    cause = kl.diagnose("planar3r", "M13", typed).causes[0]
+    assert r"/{2} does not belong in \frac{I_{3}}{2}" in cause.sentence
+    assert cause.shown["M13"].startswith("I_{3} + ")

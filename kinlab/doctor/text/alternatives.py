@@ -40,6 +40,10 @@ _ANGLE, _NEAR_ANGLE = math.pi / 12, 0.1
 """Angles that a decimal in a sine may be meant for, and how near, relative."""
 _REDUCED = 0.05
 """What a fraction costs more that nobody would leave as it is."""
+_UNDONE = 1.05
+"""Cost of a number too many that a division behind it undoes: ``2*(a*b/2)``."""
+_OF_A_PRODUCT = 0.12
+"""What a term costs more that is missing beside a product alone, as in a fraction's numerator."""
 _FACTOR_MORE = 0.035
 """What each factor of a missing term costs: of five it is no likelier than qd2 for qd1 + qd2."""
 
@@ -298,6 +302,8 @@ def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
             place, N_("/{factor} does not belong"), N_("/{factor} does not belong in {term}")
         )
         span = (at, end, "")
+        if _in_brackets(line, place) and not is_sum(left.node):  # a fraction
+            span = (start, end, line.segment(left))
         if not _is_share(place, left):
             line.edit(place, left.value, span, "factor", 1.25, told, pieces | {"factor": second})
         _as_fraction(line, place, left, right)
@@ -316,8 +322,11 @@ def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
         (left, right, second, (at, end, "")),
         (right, left, first, (start, at + 1, "")),
     ):
-        kind = "factor" if isinstance(gone.node, ast.Constant) else "extra factor"
-        line.edit(place, kept.value, span, kind, 1.3, told, pieces | {"factor": factor})
+        plain = isinstance(gone.node, ast.Constant)
+        kind = "factor" if plain else "extra factor"
+        again = plain and re.search(rf"/\s*\(?{re.escape(factor)}\b", line.segment(kept))
+        cost = _UNDONE if again else 1.3
+        line.edit(place, kept.value, span, kind, cost, told, pieces | {"factor": factor})
 
 
 def _is_share(place: Place, left: Place) -> bool:
@@ -509,7 +518,7 @@ def _as_term(line: Line, place: Place) -> None:
     for piece, value in line.pieces.items():
         twice = 0.4 * (_factors(line, piece) in there)
         for sign, near, added in (("+", 1.12, value), ("-", 1.6, -value)):
-            cost = near + _FACTOR_MORE * piece.count("*") + twice
+            cost = near + _FACTOR_MORE * piece.count("*") + twice + _OF_A_PRODUCT * (not chain)
             shown = {"term": piece if sign == "+" else f"-{piece}", "sum": f"({inside})"}
             span = (end, end, f"{line.gap}{sign}{line.gap}{piece}")
             line.edit(place, place.value + added, span, "missing term", cost, told, shown)

@@ -282,16 +282,20 @@ class Line:
             return  # at the robot's own numbers that is any other number of the place
         with np.errstate(invalid="ignore"):
             effect = self.climbed(place, new) - self.root.value
-        if change.kind == "missing term" and self._takes_out(effect):
-            return  # m1 + (m2 - m1): a term is taken out, and that is told so
+        if change.kind == "missing term" and self._is_there(effect):
+            return  # m1 + (m2 - m1) takes a term out, m1 + (m2 + m1) doubles one
         if np.isfinite(effect).all() and np.max(np.abs(effect)) > 1e-12 * self.scale:
             self.changes.append(change)
             self.rows.append(effect)
 
-    def _takes_out(self, effect: Array) -> bool:
-        """Whether what is added only takes away a term that is there."""
+    def _is_there(self, effect: Array) -> bool:
+        """Whether what is added is a term that is there, or takes one away."""
         allowed = TOLERANCES.effect_matches * self.scale
-        return bool(np.any(np.max(np.abs(self.shares + effect), axis=1) <= allowed))
+        both = np.minimum(
+            np.max(np.abs(self.shares + effect), axis=1, initial=0.0),
+            np.max(np.abs(self.shares - effect), axis=1, initial=0.0),
+        )
+        return bool(np.any(both <= allowed))
 
     @cached_property
     def shares(self) -> Array:
