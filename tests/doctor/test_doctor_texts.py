@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -290,3 +292,18 @@ def test_a_halved_term_is_none_that_is_missing_twice() -> None:
     cause = kl.diagnose("planar3r", "M13", typed).causes[0]
     assert r"/{2} does not belong in \frac{I_{3}}{2}" in cause.sentence
     assert cause.shown["M13"].startswith("I_{3} + ")
+
+
+@pytest.mark.parametrize("entry", ["phi", "det J"])
+@pytest.mark.parametrize("name", ["planar2r", "planar3r"])
+def test_what_is_in_the_plane_of_x_and_y_is_not_judged_of_an_arm_that_stands(name, entry) -> None:
+    base = np.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1.0]])
+    table = replace(kl.load(name).table, name="standing", base=base, gravity=(0.0, 0.0, -9.81))
+    with pytest.raises(kl.errors.ExpressionError, match="names no quantity"):
+        kl.diagnose(kl.Robot.from_dh(table), entry, "q1 + q2")
+
+
+@pytest.mark.parametrize("typed", [r"l_1 c_1 + l_2 c_{1,2}", r"l_1 c_1 + l_2 \cos\theta_{1,2}"])
+def test_a_comma_between_two_joints_is_refused(typed) -> None:
+    with pytest.raises(kl.errors.ExpressionError, match="in a subscript"):
+        kl.diagnose("planar2r", "x", typed)

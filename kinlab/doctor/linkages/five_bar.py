@@ -128,9 +128,8 @@ def refuse_massless(quantity: str, fivebar: FiveBar) -> None:
     """
     pairs = _pairs(fivebar)
     plain = split_name(quantity)[0]
-    if is_of_servo(plain):
-        return
-    if READ[plain][0] > 0 and not np.any(pairs["IA"]) and not np.any(pairs["m"]):
+    moving = READ[plain][0] > 0 and not is_of_servo(plain)
+    if moving and not np.any(pairs["IA"]) and not np.any(pairs["m"]):
         said = _("{name} has no masses: its torques are zero; give it a payload, or cranks of mass")
         raise ExpressionError(said.format(name=fivebar.name))
 

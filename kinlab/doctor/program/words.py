@@ -6,6 +6,7 @@ import ast
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import reduce
 from pathlib import Path
 from typing import Any
 
@@ -483,36 +484,31 @@ def _in_front(node: ast.AST) -> bool:
     return number and len(parts) > 1
 
 
+def _product(*parts: ast.expr) -> ast.expr:
+    return reduce(lambda one, other: ast.BinOp(one, ast.Mult(), other), parts)
+
+
 class _Flat(ast.NodeTransformer):
     def visit_UnaryOp(self, node: ast.UnaryOp) -> ast.expr:
         self.generic_visit(node)
         if not _in_front(node):
             return node
         first, *rest = factors(node.operand)
-        flat: ast.expr = ast.UnaryOp(node.op, first)
-        for one in rest:
-            flat = ast.BinOp(flat, ast.Mult(), one)
-        return flat
+        return _product(ast.UnaryOp(node.op, first), *rest)
 
     def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
         self.generic_visit(node)
         if _is_signed_twice(node):
             first, *rest = factors(node.right)
             assert isinstance(first, ast.UnaryOp)
-            bare = first.operand
-            for one in rest:
-                bare = ast.BinOp(bare, ast.Mult(), one)
             other = ast.Sub() if isinstance(node.op, ast.Add) else ast.Add()
-            return ast.BinOp(node.left, other, bare)
+            return ast.BinOp(node.left, other, _product(first.operand, *rest))
         if not _in_front(node):
             return node
         first, *rest = factors(node.right)
-        flat: ast.expr = node.left
         if isinstance(first, ast.UnaryOp) and isinstance(first.op, ast.USub):
-            flat, first = ast.UnaryOp(ast.USub(), flat), first.operand
-        for one in (first, *rest):
-            flat = ast.BinOp(flat, ast.Mult(), one)
-        return flat
+            return _product(ast.UnaryOp(ast.USub(), node.left), first.operand, *rest)
+        return _product(node.left, first, *rest)
 
 
 def _after(edit: ProgramEdit) -> str:

@@ -103,9 +103,10 @@ def quantity_of(entry: str, table: DHTable | None) -> str:
     planar = table is not None and is_planar(table)
     if _PLACE.fullmatch(entry):
         return _NUMBER_OF[entry.replace("_", "")]
-    if planar and entry in _ANGLES:
+    level = table is not None and planar and float(np.asarray(table.base)[2, 2]) == 1.0
+    if level and entry in _ANGLES:  # in the plane x-y of the base, as the engine has them
         return "planar_angle"
-    count = len(table.links) if table is not None and planar else 0
+    count = len(table.links) if table is not None and level else 0
     if count in _DETERMINANTS and _DETERMINANT.fullmatch(entry):
         return _DETERMINANTS[count]
     turning = _TURNING.fullmatch(entry)

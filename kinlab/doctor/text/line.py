@@ -291,11 +291,8 @@ class Line:
     def _is_there(self, effect: Array) -> bool:
         """Whether what is added is a term that is there, or takes one away."""
         allowed = TOLERANCES.effect_matches * self.scale
-        both = np.minimum(
-            np.max(np.abs(self.shares + effect), axis=1, initial=0.0),
-            np.max(np.abs(self.shares - effect), axis=1, initial=0.0),
-        )
-        return bool(np.any(both <= allowed))
+        gaps = np.abs([self.shares + effect, self.shares - effect])
+        return bool(np.any(np.max(gaps, axis=-1) <= allowed))
 
     @cached_property
     def shares(self) -> Array:

@@ -442,6 +442,9 @@ class _Reader:
         self.take()
         text = ""
         while self.next and self.next != "}":
+            if self.next == "," and text[-1:].isalpha():  # T_{max,1}; of two digits it is unclear
+                self.take()
+                continue
             text += self.take() if self.next == "+" else self.below_below()
         self.take("}")
         if "+" in text:  # c_{1+2}
@@ -466,8 +469,6 @@ class _Reader:
         return text
 
     def plain(self, token: str) -> str:
-        if token == ",":  # T_{max,1}
-            return ""
         token = token[1:] if token in _EXTREMES else _word(token) or token
         if token.isalnum():
             return token

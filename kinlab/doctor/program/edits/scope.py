@@ -186,8 +186,9 @@ class Scope:
                 for k in range(shape[0]):
                     entry = ast.Subscript(copied(plain), ast.Constant(k), ast.Load())
                     self.pieces.setdefault((), {}).setdefault(ast.unparse(entry), entry)
-        self.idle_attributes = {*self.attributes} - _read_attributes(trial)
-        self._of_objects_beside(_filled_attributes(trial) - _read_attributes(trial))
+        read_ = _read_attributes(trial)
+        self.idle_attributes = {*self.attributes} - read_
+        self._of_objects_beside(_filled_attributes(trial) - read_)
         self._of_its_object(parts[part])
         self._of_idle_attributes(parts[part])
         self._of_siblings(trial)

@@ -130,8 +130,9 @@ class _Cell:
             return self.place.edit(right, kind, _COST)
         change = FieldChange(self.holder, self.field, typed(right))
         both = (self.value, right)
-        edit = ProgramEdit(self.part, (change,), kind, _COST, self.node, numbers=both)
-        return replace(edit, of_the_arm=True)
+        return ProgramEdit(
+            self.part, (change,), kind, _COST, self.node, numbers=both, of_the_arm=True
+        )
 
 
 def _row(k: int, some: Sequence[tuple[_Cell, float]], whole: Sequence[_Cell]) -> ProgramEdit:
@@ -147,9 +148,8 @@ def _row(k: int, some: Sequence[tuple[_Cell, float]], whole: Sequence[_Cell]) ->
     both = [(cell.place, right) for cell, right in some if cell.place is not None]
     changes = [change for edit in together(both) for change in edit.changes]
     told = (", ".join(f"{x:.6g}" for x in old), ", ".join(f"{x:.6g}" for x in new))
-    cost, node = _COST, first.place.node
-    edit = ProgramEdit(DATA, tuple(changes), kind, cost, node, (k,), exchanged=told)
-    return replace(edit, of_the_arm=True)
+    node, several = first.place.node, tuple(changes)
+    return ProgramEdit(DATA, several, kind, _COST, node, (k,), exchanged=told, of_the_arm=True)
 
 
 def typed(value: float) -> ast.expr:
