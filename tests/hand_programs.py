@@ -467,11 +467,11 @@ _SAID = re.compile(
     r"|`(?P<dropped>[^`]*)`: the line is one too many)"
 )
 _OF_DATA = re.compile(
-    r"(?:^|[;:] )(?P<name>[A-Za-z_]\w*)(?P<keys>(?:\[[^\]]*\])*), [^`:;]*: "
+    r"(?:^|[;:] )(?:line \d+, )?(?P<name>[A-Za-z_]\w*)(?P<keys>(?:\[[^\]]*\])*), [^`:;]*: "
     r"(?P<old>[-+.e\d]+) should be (?P<new>[-+.e\d]+)"
 )
 _OF_ARRAY = re.compile(
-    r"(?:^|[;:] )(?P<name>[A-Za-z_]\w*)(?P<keys>(?:\[[^\]]*\])*), "
+    r"(?:^|[;:] )(?:line \d+, )?(?P<name>[A-Za-z_]\w*)(?P<keys>(?:\[[^\]]*\])*), "
     r"(?P<what>the sign|the transpose) is wrong(?=$|;)"
 )
 

@@ -22,6 +22,7 @@ from kinlab.doctor.program.digits import of_rounded_numbers
 from kinlab.doctor.program.edits.numbers.as_the_arm import of_table
 from kinlab.doctor.program.named import named
 from kinlab.doctor.program.own.definitions import DEFAULT
+from kinlab.doctor.program.own.typed import line_of
 from kinlab.doctor.program.places import BLOCKS, DATA, ProgramEdit, called, row_of
 from kinlab.doctor.program.read import read
 from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
@@ -328,7 +329,7 @@ def _told(repair: ProgramRepair, trial: Trial) -> Iterator[str]:
                 yield _of_statement(statement, several, trial)
             continue
         if edit.part == DATA:
-            yield _of_data(edit)
+            yield _of_data(edit, trial)
             continue
         old, new = _pieces(edit, trial) if edit.kind not in _MOVED else (_text(edit.node), "")
         said = {"place": _line(edit, trial), "old": old, "new": new, "what": _(_WHAT[edit.kind])}
@@ -406,9 +407,13 @@ def _place(edit: ProgramEdit) -> str:
     return str(edit.node) if edit.part == DATA else f"line {row_of(edit)}"
 
 
-def _of_data(edit: ProgramEdit) -> str:
+def _of_data(edit: ProgramEdit, trial: Trial) -> str:
     keys = (key if str(key).startswith(".") else f"[{key!r}]" for key in edit.place)
-    said = {"name": edit.node + "".join(keys), "what": _(_WHAT[edit.kind])}
+    name = edit.node + "".join(keys)
+    number = line_of(trial.program.parts[0].function, edit.node, edit.place)
+    if number is not None:
+        name = _("line {number}, {name}").format(number=number, name=name)
+    said = {"name": name, "what": _(_WHAT[edit.kind])}
     if edit.exchanged is not None:
         old_, new_ = edit.exchanged
         told = _("{name}, {what}: `{old}` should be `{new}`")

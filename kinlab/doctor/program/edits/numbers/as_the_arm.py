@@ -28,8 +28,8 @@ _ROWS = 4
 """Rows that several columns of the table may make of one."""
 _TOLD, _MOVING = 3, 2
 """Numbers of a column that tell which of the table's it is; how many may be no numbers."""
-_ALONE = 0.01
-"""What a number of a row costs more where others of it are off too."""
+_TOGETHER = 0.01
+"""What several numbers of a row cost more than one, which may do alone."""
 _END, _DECIMALS = 1.0, 15
 """Cost of the arm's base or tool for the identity; decimals that its numbers have."""
 _PARTS = 12
@@ -60,11 +60,10 @@ def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
     for (whose, k), cells in off.items():
         whole = [found[k] for key, found in columns.items() if key[0] == whose and k in found]
         several = [*islice(product(*cells.values()), _ROWS)] if len(cells) > 1 else []
-        yield from (_row(k, some, whole) for some in several)
-        more = _ALONE if several else 0.0
-        for cell, right in (one for some in cells.values() for one in some):
-            edit = cell.edit(right)
-            yield replace(edit, cost=edit.cost + more)
+        for some in several:
+            row = _row(k, some, whole)
+            yield replace(row, cost=row.cost + _TOGETHER)
+        yield from (cell.edit(right) for found in cells.values() for cell, right in found)
 
 
 def _ends(trial: Trial, table: DHTable) -> Iterator[ProgramEdit]:
