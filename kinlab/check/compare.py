@@ -227,7 +227,7 @@ def _read(answer: Any, engine: Array, name: str, quantity: Quantity) -> Array:
     if values.dtype.kind not in "iuf":
         raise FormulaError(
             f"function {name!r} answered with dtype {values.dtype}; {quantity.name!r} is real "
-            "numbers"
+            "numbers" + ("; give their real part: .real" if values.dtype.kind == "c" else "")
         )
     if values.shape != engine.shape:
         meant = _some_rows(values.shape, engine.shape, quantity.name)

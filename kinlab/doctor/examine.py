@@ -385,7 +385,10 @@ def _next_to_nothing(values: Array, engine: Array) -> bool:
 def _read(hand: Any, engine: Array, name: str, quantity: str) -> Array:
     values = np.asarray(hand)
     if values.dtype.kind not in "iuf":
-        raise OptionError(f"{name}: answered with dtype {values.dtype}; {quantity!r} is numbers")
+        raise OptionError(
+            f"{name}: answered with dtype {values.dtype}; {quantity!r} is real numbers"
+            + ("; give their real part: .real" if values.dtype.kind == "c" else "")
+        )
     values = values.astype(float)
     if values.shape != engine.shape and values.size == engine.size:
         squeezed = [s for s in values.shape[1:] if s != 1]

@@ -44,6 +44,8 @@ _COORDINATES = 6
 """Of a twist."""
 _DIGITS_LEFT = 100.0
 """Units of the last decimal that rounded answers reach at least."""
+_ANGLES = ("fivebar_angles", "fivebar_leg_angles", "planar_angle")
+"""Quantities that are angles, of which a whole turn more is the same."""
 ENERGIES = ("potential_energy", "lagrangian", "link_potential_energies")
 
 
@@ -130,8 +132,13 @@ def unusual(case: Case, engine: Array, slack: float = 0.0) -> Excuse | None:
                 "sums over qd_j qd_k are the same"
             )
             return Excuse("unusual", (said,))
-    if not any_other(case):
-        return None
+    if case.quantity.name in _ANGLES:
+        turns = np.rint((hand - engine) / (2 * np.pi))
+        if turns.any() and same_values(hand - 2 * np.pi * turns, engine, engine, slack):
+            said = _("the angle differs by whole turns (2*pi) in places: it is the same angle")
+            return Excuse("unusual", (said,))
+    if not any_other(case) or (slack and same_values(hand, engine, engine, slack)):
+        return None  # what is the engine's but for noise is no other form
     mine, theirs = essential(case, hand), essential(case, engine)
     size = engine if case.quantity.name in ENERGIES else theirs
     same = same_values(mine, theirs, size, slack)

@@ -4,22 +4,25 @@ from __future__ import annotations
 
 import ast
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes
 from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.program.edits.numbers.as_the_arm import columns_as_meant, key_of
 from kinlab.doctor.program.edits.numbers.data import NumberPlace, numbers, together
-from kinlab.doctor.program.places import ProgramEdit, places
+from kinlab.doctor.program.grounds.scaled import own_numbers
+from kinlab.doctor.program.places import ProgramEdit, called, places
 from kinlab.doctor.program.repair import LineSearch, changed
 from kinlab.doctor.program.trial import quietly
-from kinlab.doctor.text.meanings import stands_for
-from kinlab.doctor.text.stand_ins import roughly
+from kinlab.doctor.text.meanings import CLOSE, stands_for
+from kinlab.doctor.text.stand_ins import roughly, rounding_remarks
 from kinlab.doctor.text.written import Literal, beneath, inside, literal, operands
-from kinlab.doctor.verdicts import Excuse, by_digits, essential, rounded_otherwise
+from kinlab.doctor.verdicts import Excuse, by_digits, essential, numbers_at, rounded_otherwise
 from kinlab.host.language import _
 from kinlab.tolerances import TOLERANCES
 
@@ -29,6 +32,8 @@ _COMPILING = 30
 """What compiling one node amounts to."""
 _FEWEST = 3
 """Digits from which on a number may be another one rounded, though others make up for it."""
+_CUT = 4
+"""Digits from which on a number may end where the next digit would."""
 _MOST = 7
 """Digits from which on it is not."""
 _PARTS = 1000
@@ -37,6 +42,8 @@ _ENDLESS = (1 / 3, 2 / 3, 1 / 6, 1 / 12, math.pi, math.pi / 2, math.sqrt(2), mat
 """Numbers that nobody can type in full."""
 _TOLD = 3
 """Numbers that are told."""
+_LIMITING = ("min", "max", "clip", "minimum", "maximum", "isclose", "allclose")
+"""Functions to which limits are given."""
 _SIDES = (ast.List, ast.Tuple, ast.Assign, ast.Return, ast.UnaryOp)
 """Around a whole number that is one, and no index or size."""
 _FARTHEST, _BEYOND = 0.25, 1.2
@@ -112,6 +119,10 @@ def of_rounded_numbers(search: LineSearch) -> Excuse | None:
     gap = np.abs(essential(case, case.hand) - essential(case, wanted))
     if not np.max(gap) <= _FARTHEST * np.max(np.abs(essential(case, wanted))):
         return None
+    with quietly():
+        known = _of_the_robot(search)
+    if known is not None:
+        return known
     every = [*_literals(search)]
     size = int(np.prod(wanted.shape[1:], initial=1))
     which = range(min(len(wanted), -(-_OVER * len(every) // size) + 2))
@@ -135,8 +146,76 @@ def of_rounded_numbers(search: LineSearch) -> Excuse | None:
         return _laid(_Numbers(search, list(places), literals, which))
 
 
-def _literals(search: LineSearch) -> Iterator[tuple[NumberPlace, Literal]]:
-    """The numbers of a program that somebody typed, and what each is."""
+def _of_the_robot(search: LineSearch) -> Excuse | None:
+    """Why a program is right, if its numbers are the robot's own to the digits written."""
+    case = search.case
+    constant = (abs(x.flat[0]) for x in numbers_at(case).values() if x.size and np.ptp(x) == 0)
+    own = np.unique([*np.abs(own_numbers(case.robot)), *constant, *_ENDLESS])
+    columns = columns_as_meant(search.trial, search.observed, case.robot, _may_stand)
+    meant: list[tuple[NumberPlace, Literal, float]] = []
+    limits = _limits(search)
+    for place, one in _written(search):
+        if limits & {id(place.node), place.node}:
+            continue
+        column = columns.get(key_of(place))
+        exact = abs(column or float(own[np.argmin(np.abs(own - one.value))]))
+        few = column is None and one.digits == 1 and abs(exact - one.value) > CLOSE * exact
+        if one.value and exact != one.value and not few and _is_rounded(one, exact):
+            meant.append((place, one, exact))
+    plain = [one for one in meant if not (4 * one[1].value).is_integer()]
+    for some in (plain, meant) if len(plain) < len(meant) else (meant,):
+        found = _if_meant(search, some)
+        if found is not None:
+            return found
+    return None
+
+
+def _limits(search: LineSearch) -> set[Any]:
+    """What stands in comparisons, and where something is cut off: limits, which none rounds.
+
+    Nodes of the text by what they are, and names.
+    """
+    every = (node for tree in search.trial.trees for node in nodes(tree))
+    inner = [x for node in every if _is_limited(node) for x in nodes(node)]
+    return {id(x) for x in inner} | {x.id for x in inner if isinstance(x, ast.Name)}
+
+
+def _is_limited(node: ast.AST) -> bool:
+    call = isinstance(node, ast.Call) and called(node) in _LIMITING
+    return call or isinstance(node, ast.Compare)
+
+
+def _if_meant(
+    search: LineSearch, meant: Sequence[tuple[NumberPlace, Literal, float]]
+) -> Excuse | None:
+    """The excuse of numbers that stand for others, if all is right with these."""
+    if not meant:
+        return None
+    places, literals, numbers_ = zip(*meant, strict=True)
+    whole = _Numbers(search, [*places], literals, range(0))
+    answers = whole.answers({}, np.array(numbers_))
+    far = sorted(meant, key=lambda one: -abs(one[2] / one[1].value - 1))
+    told = rounding_remarks([(one, exact) for _place, one, exact in far], numbers_at(search.case))
+    if len(told) > _TOLD:
+        more = _("{count} more numbers are rounded, too").format(count=len(told) - _TOLD)
+        told = [*told[:_TOLD], more]
+    return rounded_otherwise(replace(search.case, hand=answers), search.wanted, told)
+
+
+def _is_rounded(one: Literal, exact: float) -> bool:
+    """Whether a number is another to its digits, or of many cut off."""
+    cut = one.digits >= _CUT and one.value < exact
+    reach = max(one.reach, 2 * one.half * cut)
+    return abs(exact - one.value) <= reach * (1 + TOLERANCES.same_relation)
+
+
+def _may_stand(value: float, exact: float) -> bool:
+    """The same of a number of a program, with its sign."""
+    return value * exact > 0 and _is_rounded(literal(repr(abs(value))), abs(exact))
+
+
+def _written(search: LineSearch) -> Iterator[tuple[NumberPlace, Literal]]:
+    """The numbers of a program, and what each is."""
     trial = search.trial
     above: dict[int, str] = {}
     for tree in trial.trees:
@@ -145,12 +224,17 @@ def _literals(search: LineSearch) -> Iterator[tuple[NumberPlace, Literal]]:
                 above[id(part)] = inside(node, k, above.get(id(node), ""))
     for place in (*numbers(trial, search.observed), *_whole_numbers(search)):
         value = abs(place.value)
-        if not math.isfinite(value):
-            continue
-        one = literal(repr(float(value)) if isinstance(place.value, float) else str(int(value)))
-        endless = _endless(one) if one.digits >= _MOST else None
+        if math.isfinite(value):
+            text = repr(float(value)) if isinstance(place.value, float) else str(int(value))
+            yield place, beneath(literal(text), above.get(id(place.node), ""))
+
+
+def _literals(search: LineSearch) -> Iterator[tuple[NumberPlace, Literal]]:
+    """The numbers of a program that somebody typed, and what each is."""
+    for place, one in _written(search):
+        endless = _endless(one) if one.digits >= _MOST and not one.exponent else None
         if endless is not None or 0 < one.digits < _MOST:
-            yield place, beneath(endless or one, above.get(id(place.node), ""))
+            yield place, endless or one
 
 
 def _endless(one: Literal) -> Literal | None:

@@ -95,6 +95,7 @@ class OwnProgram:
         plain: the same program without what runs before the function is asked, if that is read:
             the lines of its module, the function that makes it.
         making: of a function that another one makes, which is the first part: how.
+        begun: names of lists and dictionaries that only the parts fill: they begin empty.
     """
 
     parts: tuple[OwnFunction, ...]
@@ -106,6 +107,7 @@ class OwnProgram:
     through: dict[str, set[str]]
     plain: OwnProgram | None = None
     making: Making | None = None
+    begun: frozenset[str] = frozenset()
 
 
 def read(function: Callable[..., Any]) -> OwnProgram | None:
@@ -181,12 +183,14 @@ class _Reading:
     bound: tuple[Any, ...]
     given: dict[str, Any] = field(default_factory=dict)
     lines: ast.FunctionDef | None = None
+    begun: frozenset[str] = frozenset()
 
 
 def _with_lines(asked: _Reading) -> OwnProgram | None:
     """A program with the lines of its module, if it has any that can be read."""
+    module = of_module(asked.function)
+    asked = replace(asked, begun=frozenset() if module is None else module.begun)
     plain = _Reader(asked).program()
-    module = of_module(asked.function) if plain is not None else None
     if plain is None or module is None:
         return plain
     used = {name for part in plain.parts for name in used_in(part.function.__code__)}
@@ -300,7 +304,7 @@ class _Reader:
                 self._wait(owner, name, one, kept)
                 continue
             tree = tree_of(one)
-            if tree is None or not is_plain(tree, one) or remembers(tree, one):
+            if tree is None or not is_plain(tree, one) or remembers(tree, one, self.asked.begun):
                 if self._may_stay(name, owner):
                     continue
                 return None
@@ -318,7 +322,8 @@ class _Reader:
         if self.lines is not None:
             parts.append(OwnFunction(_LOADED, self.lines, self.function, sets=sets))
         data = [label for label in self.data if label not in sets or _is_class(self.space[label])]
-        data = [label for label in data if not _is_record(self.space[label])]
+        begun = self.asked.begun
+        data = [x for x in data if x not in begun and not _is_record(self.space[x])]
         held = {*self.used, *self.asked.given} & {
             label for label, value in self.space.items() if isinstance(value, list | dict | set)
         }
@@ -328,9 +333,8 @@ class _Reader:
             for label, value in self.space.items()
         }
         copied = frozenset(held)
-        return OwnProgram(
-            tuple(parts), bound, space, tuple(data), copied, self.modules, self.through
-        )
+        known = (tuple(parts), bound, space, tuple(data), copied, self.modules, self.through)
+        return OwnProgram(*known, begun=begun)
 
     @staticmethod
     def _may_stay(name: str, owner: type | None) -> bool:

@@ -119,6 +119,8 @@ class Trial:
         }
         for name in held:
             self.space[name] = self._own(program.space[name])
+        begun = (self.space[name] for name in held if name in program.begun)
+        self._filled = [one for one in begun if isinstance(one, list | dict)]
         self.bound = tuple(self._own(one) for one in program.bound)
         self._keep()
         calls = CALLS if _catches(program) else CALLS | REAL_CALLS
@@ -377,6 +379,8 @@ class Trial:
             try:
                 if self._stale:
                     self.load()
+                for filled in self._filled:
+                    filled.clear()
                 return self._entry()(*self.bound, *state)
             except SystemExit as end:  # an edit led to where the program ends itself
                 self._stale = self._stale or bool(self._loads)

@@ -86,6 +86,15 @@ class ModuleLines:
     others: frozenset[str]
     space: dict[str, Any]
 
+    @property
+    def begun(self) -> frozenset[str]:
+        """Names of lists and dictionaries that only functions fill: what they remember."""
+        empty = [one for one in self.lines if _is_empty(getattr(one.node, "value", None))]
+        others = [one for one in self.lines if one not in empty]
+        filled = self.others.union(*(one.sets for one in others))
+        names_ = [name for one in empty for name in one.sets]
+        return frozenset(x for x in names_ if x not in filled and names_.count(x) == 1)
+
     def needed(
         self,
         used: Iterable[str],
@@ -287,6 +296,16 @@ def _set_by(tree: ast.AST) -> set[str]:
         root = _root(tree.func.value) if tree.func.attr in _GROWING else None
     found |= {root} if root is not None else set()
     return found.union(*map(_set_by, ast.iter_child_nodes(tree)))
+
+
+def _is_empty(node: ast.AST | None) -> bool:
+    """Whether it is a list or a dictionary with nothing in it: ``{}``, ``dict()``."""
+    if isinstance(node, ast.Call):
+        bare = isinstance(node.func, ast.Name) and node.func.id in ("dict", "list")
+        return bare and not node.args and not node.keywords
+    if isinstance(node, ast.Dict):
+        return not node.keys
+    return isinstance(node, ast.List) and not node.elts
 
 
 def _root(node: ast.AST) -> str | None:

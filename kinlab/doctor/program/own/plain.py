@@ -155,8 +155,11 @@ _BEYOND = (
 """What a program of plain arithmetic has not."""
 
 
-def remembers(tree: ast.FunctionDef, function: FunctionType) -> bool:
-    """Whether a function keeps something from one call to the next: a list of what it was asked."""
+def remembers(tree: ast.FunctionDef, function: FunctionType, begun: frozenset[str]) -> bool:
+    """Whether a function keeps something from one call to the next: a list of what it was asked.
+
+    What is known to have ``begun`` with nothing in it does not matter: it can begin so again.
+    """
     known = {**function.__globals__, **closed(function)}
     named = inspect.signature(function, follow_wrapped=False).parameters.values()
     kept = {p.name for p in named if isinstance(p.default, list | dict | set)}
@@ -165,12 +168,12 @@ def remembers(tree: ast.FunctionDef, function: FunctionType) -> bool:
     for node in nodes(tree):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
             root = _root(node.func.value)
-            held = None if root is None or root in own else known.get(root, ())
+            held = None if root is None or root in own | begun else known.get(root, ())
             if node.func.attr in _KEEPING and not isinstance(held, ModuleType | None):
                 return True
         if isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Store):
             root = _root(node.value)
-            held = None if root is None else known.get(root)
+            held = None if root is None or root in begun else known.get(root)
             if root in kept or (root not in own and isinstance(held, dict)):
                 return True
     return False

@@ -111,6 +111,30 @@ def as_it_is(trial: Trial, observed: Observed, robot: Any) -> Callable[[ProgramE
     return sure
 
 
+def columns_as_meant(
+    trial: Trial, observed: Observed, robot: Any, alike: Callable[[float, float], bool]
+) -> dict[Any, float]:
+    """What the arm's table has for the numbers of whole columns that are alike, by their places."""
+    table = table_of(robot)
+    found: dict[Any, float] = {}
+    for column in _columns_of(trial, observed).values() if table is not None else ():
+        cells = [column[k] for k in sorted(column)]
+        if table is None or len(cells) != table.n:
+            continue
+        values = [cell.value for cell in cells]
+        for right in _columns(table):
+            pairs = zip(values, right.tolist(), strict=True)
+            if all(value == exact or alike(value, exact) for value, exact in pairs):
+                found |= zip((cell.key for cell in cells), right.tolist(), strict=True)
+                break
+    return found
+
+
+def key_of(place: NumberPlace) -> Any:
+    """What tells a number's place from all others."""
+    return id(place.node) if place.part != DATA else (place.node, place.place)
+
+
 @dataclass(frozen=True, eq=False)
 class _Cell:
     """A number of a table: in the data, or in the text of a program, where it hangs."""
@@ -121,6 +145,10 @@ class _Cell:
     holder: Any = None
     field: Any = None
     node: Any = None
+
+    @property
+    def key(self) -> Any:
+        return id(self.node) if self.place is None else key_of(self.place)
 
     def edit(self, right: float) -> ProgramEdit:
         """The table's number there."""
