@@ -159,7 +159,7 @@ def _of_term(
     pairs = [*pairs_in_product(rows, wanted, share), *pairs_adding_up(rows, wanted, allowed)]
     found = [(inside[a], inside[b]) for a, b in pairs]
     apart: list[tuple[int, ...]] = [
-        way for way in found if not _overlap([line.changes[k] for k in way])
+        way for way in found if not _overlap(_nested(line.source, [line.changes[k] for k in way]))
     ]
     return next(iter(_cheapest(line, apart)), ())
 
@@ -216,7 +216,7 @@ def _checked(line: Line, found: list[tuple[int, ...]], words: int = _LONG) -> It
     seen: set[str] = set()
     for way in found:
         changes = tuple(sorted((line.changes[k] for k in way), key=lambda c: (c.start, c.end)))
-        if _overlap(changes):
+        if _overlap(_nested(line.source, changes)):
             continue
         text = rewritten(line.source, changes)
         if text is None or text in seen:
@@ -236,10 +236,28 @@ def _same_formula(changes: tuple[Change, ...]) -> bool:
     return sum(c.kind in _TERMS for c in changes) < 3
 
 
+def _nested(source: str, changes: Sequence[Change]) -> list[Change]:
+    """The changes, with one that keeps a piece and one within that piece as one change."""
+    wide = sorted(changes, key=lambda c: c.start - c.end)
+    for k, outer in enumerate(wide):
+        piece = source[outer.start : outer.end]
+        if len(piece) < 2 or outer.new.count(piece) != 1 or outer.everywhere:
+            continue
+        inner = [c for c in wide[k + 1 :] if outer.start <= c.start and c.end <= outer.end]
+        others = [c for c in changes if c is not outer and c not in inner]
+        if inner and not any(c.everywhere for c in inner) and not _overlap(inner):
+            at = outer.new.index(piece) - outer.start
+            new = outer.new
+            for c in sorted(inner, key=lambda c: -c.start):
+                new = new[: at + c.start] + c.new + new[at + c.end :]
+            return _nested(source, [*others, replace(outer, new=new)])
+    return [*changes]
+
+
 def rewritten(source: str, changes: tuple[Change, ...]) -> str | None:
     """The text with the changes in place; None where it is no formula any more."""
     text = source
-    for change in sorted(changes, key=lambda c: (-c.start, -c.end)):
+    for change in sorted(_nested(source, changes), key=lambda c: (-c.start, -c.end)):
         text = text[: change.start] + change.new + text[change.end :]
     if any(change.new.startswith("-") for change in changes):
         text = _signs_in_front(text)
