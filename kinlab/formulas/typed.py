@@ -77,6 +77,14 @@ _ALONE = re.compile(
     r"(?:(?<![A-Za-z])(?:sin|cos|tan|sqrt)(?![A-Za-z])|(?<![A-Za-z])[A-Za-z](?![A-Za-z])|[^A-Za-z])*"
 )
 """Text without words: names of one letter, and functions."""
+_GLUED_NUMBER = re.compile(r"(?<![\w.])\d+[A-Za-z]{2}")
+_NUMBERED_NAME = re.compile(r"(?<![A-Za-z])[A-Za-z]\d")
+_WORDS = """
+    lc qd qdd th thd dq ddq dth tau phi psi eta pi xd yd vx vy vz ax ay az ux uy wx wy wz px py pz
+    rx ry rz cx cy cz mx my mz nx ny nz fx fy fz Ix Iy Iz Ixx Iyy Izz Ixy Ixz Iyz Ia IA Im IL Jm Jv
+    Jw mp me mA mB rA np sin cos tan mod abs exp log det rot dot
+""".split()  # noqa: SIM905  a list of seventy
+"""Names and functions of several letters, of which none is a product."""
 _GLUED = re.compile(r"_\w[A-Za-z]")
 """A product of names without a sign or a blank, as only LaTeX has it."""
 _PRIMED = re.compile(r"(?<![A-Za-z])(q|th|theta|θ)(_?[\d₀-₉]+)('{1,2}|′{1,2}|″)(?!')")
@@ -191,9 +199,20 @@ def leaves_of(text: str, place: str, writing: Hand, typeset: bool) -> list[latex
 
 
 def _side_by_side(text: str) -> bool:
-    """Whether a text without a backslash has its factors side by side: m₁l₁² cos θ₂, m_1 l_1."""
-    unlike = not text.isascii() or _GLUED.search(text)
-    return bool(unlike and _ALONE.fullmatch(_CENTRE.sub(r"l\1", text)))
+    """Whether a text without a backslash has its factors side by side: m₁l₁² cos θ₂, m_1 gl_1."""
+    text = _CENTRE.sub(r"l\1", text)
+    indexed = "_" in text and not _NUMBERED_NAME.search(text)
+    if text.isascii() and not _GLUED.search(text) and not (indexed and _GLUED_NUMBER.search(text)):
+        return False
+    return bool(_ALONE.fullmatch(text)) or ("*" not in text and _runs_together(text))
+
+
+def _runs_together(text: str) -> bool:
+    """Whether its words are letters side by side, and functions behind these: gl₁cosθ₁, 2ex."""
+    words = re.findall(r"[A-Za-z]+", text)
+    letters = [re.sub(r"(?:sin|cos|tan|sqrt)$", "", word) for word in words]
+    apart = (len(x) < 2 or (x not in _WORDS and len(x) < 4) for x in letters)
+    return "[" not in text and all(apart)
 
 
 def is_latex(text: str) -> bool:
@@ -215,13 +234,14 @@ _COMMENT = re.compile(r"(?<!\\)%.*")
 """What MATLAB and LaTeX leave out."""
 
 
+_LONG_BARS = re.compile(r"\\left\s*\|\s*J\s*\\right\s*\||\\lvert\s*J\s*\\rvert")
 _GAP = re.compile(r"\s{12,}")
 
 
 def bare(text: str) -> str:
     """A formula without the dollars and environments around it, and what says nothing behind it."""
     text = _GAP.sub(lambda gap: "\n" if "\n" in gap[0] else " ", text.translate(WIDE))
-    text, before = _COMMENT.sub("", text).strip(), ""
+    text, before = _LONG_BARS.sub("|J|", _COMMENT.sub("", text)).strip(), ""
     while text != before:
         before = text = without_remarks(text).strip()
         for opening, closing in _OUTSIDE:
@@ -622,6 +642,10 @@ def _equations(text: str) -> list[str]:
     return [line for line in found if line]
 
 
+_DETERMINANT = re.compile(r"\\?det\s*(?:\(?\s*J\s*\)?)?|\|\s*J\s*\|")
+"""The determinant of J as it is typed."""
+
+
 def entry_name(text: str, place: str = "expression", writing: Hand | None = None) -> str:
     r"""The name on a left side: ``\tau_{2}``, ``τ₂``, ``tau(2)`` and ``tau_2`` are tau2.
 
@@ -636,6 +660,8 @@ def entry_name(text: str, place: str = "expression", writing: Hand | None = None
     if len(text) > _LONGEST_NAME:
         raise refused(place, N_("{text}... is no name of an entry"), text=text[:30])
     typed = _IN_BASE.sub("", _OF_STATE.sub("", bare(text).strip("& ")).strip())
+    if _DETERMINANT.fullmatch(typed):
+        return "det J"
     named = _NAMED.fullmatch(typed)
     if named and (not named[2] or named[1] == "fk" or "_" in named[1] or named[1] in LONG):
         return typed  # a quantity by its own name

@@ -14,6 +14,7 @@ import pytest
 from random_tables import random_inertia, random_pose, random_table
 
 import kinlab as kl
+from kinlab.doctor.glossary.linkage import linkage_meanings
 from kinlab.doctor.glossary.meaning import PHRASES, meaning_of, said
 from kinlab.doctor.glossary.textbook import Sense, meanings
 from kinlab.host.language import speaking
@@ -422,7 +423,44 @@ def test_every_phrase_is_of_something_that_is_known():
         for rows, values in meanings(kl.Robot.from_dh(table), state).things.values():
             assert len(rows) == len(values)
             found |= {sense.what for _, sense in rows}
+    linkage = linkage_meanings(kl.FiveBar.load("isotropic"), FIVE_BAR_STATE)
+    for rows, values in linkage.things.values():
+        assert len(rows) == len(values)
+        found |= {sense.what for _, sense in rows}
     assert found == set(PHRASES)
+
+
+FIVE_BAR_STATE = {
+    "xy": np.array([0.05, -0.55]), "v": np.array([0.3, -0.2]), "a": np.array([1.0, 2.0]),
+    "mode": np.array([1.0, -1.0]),
+}  # fmt: skip
+
+
+def test_a_five_bars_bars_rates_and_torques_are_known_by_the_notes_names() -> None:
+    """From the triangles of the legs, with nothing of kinlab's."""
+    l1, l2, e = 0.3, 0.5, 0.2 / np.sqrt(2)
+    known = linkage_meanings(kl.FiveBar.load("isotropic"), FIVE_BAR_STATE)
+
+    def named(value) -> set[str]:
+        rows, gaps = known.gaps(np.asarray(value, dtype=float))
+        return {rows[k][1].of for k in np.flatnonzero(gaps <= 1e-9)}
+
+    rates = np.empty(2)
+    for i, (base, mode) in enumerate(zip((e, -e), FIVE_BAR_STATE["mode"], strict=True)):
+        leg, away = str(i + 1), FIVE_BAR_STATE["xy"] - [base, 0.0]
+        r = np.hypot(*away)
+        inner = np.arccos((l1**2 + r**2 - l2**2) / (2 * l1 * r))
+        for theta in np.arctan2(away[1], away[0]) + inner * np.array([1, -1]):
+            u = np.array([np.cos(theta), np.sin(theta)])
+            w = (away - l1 * u) / l2
+            if np.sign(u[0] * w[1] - u[1] * w[0]) == mode:
+                break
+        assert f"u_{leg}" in named(u) and f"w_{leg}" in named(w)
+        assert f"elbow {leg}" in named([base + l1 * u[0], l1 * u[1]])
+        assert f"A_{leg}" in named(2 * l1 * -away[0])
+        rates[i] = (w @ FIVE_BAR_STATE["v"]) / (l1 * (u[0] * w[1] - u[1] * w[0]))
+    assert "thetad" in named(rates)
+    assert not named([0.123, 0.456])
 
 
 def test_angles_and_rates_of_a_plane_arm_are_about_the_bases_axis() -> None:

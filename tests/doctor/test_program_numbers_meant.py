@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hand_programs import written
 
 import kinlab as kl
-from tests.hand_programs import written
 
 RECURSION = """
 import numpy as np

@@ -138,6 +138,8 @@ def test_what_sympy_writes_is_read_back_often(writer):
         (r"\omega_1^2", "qd1**2"), (r"\mathrm{l}_{\mathrm{c1}} m1", "lc1*m1"), ("m₁l₁²θ̇₁ cos θ₂", "m1*l1**2*qd1*cos(q2)"),
         ("θ₁ + θ1", "2*q1"), ("l1.*cos(q(1)).^2", "l1*cos(q1)**2"), ("np.cos(q[1])*q[0]", "cos(q2)*q1"),
         ("½m₁l₁²", "m1*l1**2/2"),
+        ("(m₁+m₂)gl₁cosθ₁ + m₂gl₂cos(θ₁+θ₂)", "(m1+m2)*g*l1*cos(q1) + m2*g*l2*cos(q1+q2)"),
+        ("(m_1+m_2)gl_1cos(θ_1)", "(m1+m2)*g*l1*cos(q1)"), ("2gl_1 + l_1^2 + m_1", "2*g*l1 + l1**2 + m1"),
         ("- 0.25 l_1 m_2 + l_2", "-0.25*l1*m2 + l2"), (r"\frac12 m_1", "m1/2"), (r"{\dot q}_1^2", "qd1**2"), ("l_2*c_12", "l2*cos(q1+q2)"),
         (r"\begin{equation} 1/2 m_1 l_1 \end{equation}", "m1*l1/2"), (r"\sin^{2}{\left(q_{1} \right)}", "sin(q1)**2"),
         (r"m_1 l_1/2\cos q_1", "m1*l1/2*cos(q1)"), (r"\cos\frac{q_1}{2}", "cos(q1/2)"), ("2^-1*l1", "l1/2"),

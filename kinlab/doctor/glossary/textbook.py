@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array
 from kinlab.doctor.glossary.spatial import PlacedLinks, Thing, moving, pushing, still
-from kinlab.engine import dynamics, kinematics, links
+from kinlab.engine import dynamics, kinematics, lagrange, links
 from kinlab.model.link import Convention, steiner
 from kinlab.model.robot import Robot
 from kinlab.tolerances import TOLERANCES
@@ -359,6 +359,7 @@ class _Gathered:
         for i in range(self.n):
             for j in range(i, self.n):
                 self.put("M_entry", M[i, j], of=f"{i + 1}, {j + 1}")
+        self.slopes(lagrange.christoffel(robot, q), lagrange.mass_matrix_derivatives(robot, q))
         linear, angular = self.Jc[:, :3], self.Jc[:, 3:]
         mass = self.mass[:, None, None] * (np.swapaxes(linear, 1, 2) @ linear)
         self.each("m Jv^T Jv", mass, rank=1)
@@ -385,6 +386,18 @@ class _Gathered:
         if tau is not None:
             self.put("tau", tau)
             self.each("tau_entry", tau)
+
+    def slopes(self, symbols: Array, derivatives: Array) -> None:
+        """Christoffel's symbols, and dM/dq with the index of q behind and in front."""
+        self.put("christoffel", symbols, rank=1)
+        self.put("M_slopes", derivatives, rank=1)
+        self.put("M_slopes", np.moveaxis(derivatives, 2, 0), rank=1)
+        self.each("M_slope", np.moveaxis(derivatives, 2, 0), rank=1)
+        for (i, j, k), x in np.ndenumerate(symbols):
+            if j <= k:
+                self.put("christoffel_entry", x, of=f"{i + 1}, {j + 1}, {k + 1}", rank=2)
+        if "v" in self.given:
+            self.put("M_dot", derivatives @ self.given["v"], rank=1)
 
 
 def _turned(turn: Array, vectors: Array) -> Array:

@@ -110,6 +110,7 @@ KINDS: dict[str, str] = {
     N_("before the loop"): N_("a line stands before a loop and belongs in it"),
     N_("rows"): N_("other rows or columns are taken"),
     N_("product"): N_("a product of matrices and one of entries are mixed"),
+    N_("missing entry"): N_("an entry is not set"),
     N_("missing matrix"): N_("a product with a matrix is missing"),
     N_("other"): N_("a known confusion"),
     N_("unknown"): N_("the cause is not known"),

@@ -9,7 +9,6 @@ from dataclasses import replace
 import numpy as np
 
 from kinlab.doctor.bytecode.syntax import nodes
-from kinlab.doctor.changes import table_of
 from kinlab.doctor.glossary.meaning import meaning_of, said
 from kinlab.doctor.glossary.textbook import Glossary, Sense
 from kinlab.doctor.program.observed import Observed
@@ -27,9 +26,9 @@ def named(edit: ProgramEdit, search: LineSearch) -> list[tuple[str, str]]:
         edit: of the program.
         search: whose program was observed.
     """
-    if table_of(search.case.robot) is None or edit.kind in ("loop", "condition"):
-        return []
     known = search.evidence.known
+    if not known or edit.kind in ("loop", "condition"):
+        return []
     if edit.part == DATA:
         if edit.numbers is None:
             return []

@@ -132,7 +132,7 @@ def paired(target: ast.expr, value: ast.expr) -> Iterator[tuple[ast.expr, ast.ex
 _NUMBERED = re.compile(r"([^\W\d]+)(\d+)")
 
 
-def numbered(node: ast.expr) -> tuple[str, int] | None:
+def numbered(node: ast.AST) -> tuple[str, int] | None:
     """The letters and the number of a name: of ``m3``."""
     found = _NUMBERED.fullmatch(node.id) if isinstance(node, ast.Name) else None
     return None if found is None else (found[1], int(found[2]))

@@ -23,6 +23,7 @@ from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes, relative_errors
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import ANY_ZERO, Case, table_of
+from kinlab.doctor.glossary.linkage import linkage_meanings
 from kinlab.doctor.glossary.textbook import Glossary, meanings
 from kinlab.doctor.program.edits.every import edits
 from kinlab.doctor.program.edits.numbers.as_the_arm import as_it_is, of_table
@@ -49,6 +50,7 @@ from kinlab.doctor.program.read import OwnProgram
 from kinlab.doctor.program.trial import FailedError, NoProgramError, Trial, named_in, quietly
 from kinlab.doctor.program.variants import Variants
 from kinlab.errors import KinlabError
+from kinlab.fivebar.linkage import FiveBar
 from kinlab.formulas.record import state_by_state
 from kinlab.tolerances import TOLERANCES
 
@@ -82,6 +84,8 @@ _ROUGH, _ROUGHER = 0.15, 100.0
 """What a repair costs more that leaves differences; how much more one may leave than another."""
 _ALIKE = 0.03
 """Costs that are nothing to go by beside what a repair leaves right."""
+_BESIDE = 0.08
+"""The same of a missing term beside a factor, where it makes more what a textbook has."""
 _SAME = 0.011
 """Costs that are one."""
 _ARMS = 600_000
@@ -253,11 +257,13 @@ class LineSearch:
 
     def _prepare(self) -> None:
         self.states = self.states_at(self.watched)
+        given, robot = self.case.arguments.items(), self.case.robot
+        states = ({name: stack[k] for name, stack in given} for k in self.watched)
         self.known: list[Glossary] = []
-        if table_of(self.case.robot) is not None:
-            given = self.case.arguments.items()
-            states = ({name: stack[k] for name, stack in given} for k in self.watched)
-            self.known = [meanings(self.case.robot, state) for state in states]
+        if isinstance(robot, FiveBar):
+            self.known = [linkage_meanings(robot, state) for state in states]
+        elif table_of(robot) is not None:
+            self.known = [meanings(robot, state) for state in states]
         self.observed = Observed(self.trial, self.states)
         self.amounts = amounts(self.trial, self.observed, self.states)
         self.nodes = [len(nodes(tree)) for tree in self.trial.trees]
@@ -444,12 +450,17 @@ class LineSearch:
         if len(found) < 2 or not self.evidence.known:
             return found
         found = self.of_any_arm(found)
-        likeliest = self.likely(found[0].edits[-1])
-        lines: dict[int, ProgramRepair] = {}
+        best = found[0].edits[-1]
+        likeliest = self.likely(best)
+        lines: dict[Any, ProgramRepair] = {}
         for repair in found:
             edit = repair.edits[-1]
-            if edit.part != DATA and self.likely(edit) <= likeliest + _ALIKE:
+            if edit.part == DATA:
+                continue
+            if self.likely(edit) <= likeliest + _ALIKE:
                 lines.setdefault(row_of(edit), repair)
+            elif self.likely(edit) <= likeliest + _BESIDE and _more_than(best, edit):
+                lines.setdefault((row_of(edit), edit.kind), repair)
         if len(lines) < 2:
             return found
         rights = {id(one): self.left_right(one.edits[-1:]) for one in [*lines.values()][:_RIVALS]}
@@ -657,6 +668,9 @@ class LineSearch:
             old: Any = edit.numbers[0]
         elif isinstance(edit.node, ast.Constant) and id(edit.changes[0].holder) in named:
             old = edit.node.value
+        elif edit.part != DATA and self.program.parts[edit.part].sets:
+            seen = self.observed.of(edit.node)  # worked out as the module is loaded
+            old = float(seen.values[0]) if seen and seen.shape == () and seen.values else None
         else:
             return False
         return isinstance(old, int | float) and self.is_own(old) and not self.is_own(-old)
@@ -785,6 +799,12 @@ class LineSearch:
         except (KinlabError, TypeError, ValueError):
             return None
         return values if values.shape == wanted.shape else None
+
+
+def _more_than(factor: ProgramEdit, edit: ProgramEdit) -> bool:
+    """Whether an edit adds a term to what another one only multiplies, in one line."""
+    same = factor.part == edit.part != DATA and row_of(factor) == row_of(edit)
+    return same and (factor.kind, edit.kind) == ("factor", "missing term")
 
 
 def _at_best(edit: ProgramEdit) -> float:

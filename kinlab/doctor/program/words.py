@@ -91,6 +91,7 @@ _WHAT = {
     "before the loop": N_("the line stands before the loop, and belongs in it"),
     "missing statement": N_("a line is missing"),
     "missing argument": N_("an argument is missing"),
+    "missing entry": N_("the entry across from it is to be set, too"),
     "missing matrix": N_("the product with a rotation or another matrix is missing"),
 }
 
@@ -484,13 +485,22 @@ def _in_front(node: ast.AST) -> bool:
         return len(parts) > 1 and not isinstance(parts[0], ast.Constant | ast.UnaryOp)
     if not isinstance(node, ast.BinOp) or not isinstance(node.op, ast.Mult):
         return False
-    parts = factors(node.right)
-    number = isinstance(node.left, ast.Constant) and not isinstance(parts[0], ast.Constant)
-    return number and len(parts) > 1
+    return isinstance(node.left, ast.Constant) and len(factors(node.right)) > 1
 
 
 def _product(*parts: ast.expr) -> ast.expr:
     return reduce(lambda one, other: ast.BinOp(one, ast.Mult(), other), parts)
+
+
+def _numbers_first(one: ast.expr, other: ast.expr, *rest: ast.expr) -> list[ast.expr]:
+    """Factors with two numbers in front as one, and no 1: ``0.5*(2*a)`` is ``a``."""
+    first, last = (getattr(x, "value", None) for x in (one, other))
+    if not isinstance(first, int | float) or not isinstance(last, int | float):
+        return [one, other, *rest]
+    value = first * last
+    if value == 1 and rest:
+        return [*rest]
+    return [ast.Constant(int(value) if value == int(value) else value), *rest]
 
 
 class _Flat(ast.NodeTransformer):
@@ -512,8 +522,9 @@ class _Flat(ast.NodeTransformer):
             return node
         first, *rest = factors(node.right)
         if isinstance(first, ast.UnaryOp) and isinstance(first.op, ast.USub):
-            return _product(ast.UnaryOp(ast.USub(), node.left), first.operand, *rest)
-        return _product(node.left, first, *rest)
+            front, *rest = _numbers_first(node.left, first.operand, *rest)
+            return _product(ast.UnaryOp(ast.USub(), front), *rest)
+        return _product(*_numbers_first(node.left, first, *rest))
 
 
 def _after(edit: ProgramEdit) -> str:

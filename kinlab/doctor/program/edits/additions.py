@@ -39,6 +39,8 @@ _NEXT_ANGLE = 1.08
 """Cost of the angle of the joint before, or next, in a sum: c12 for c2."""
 _DIVIDED = 1.07
 """Cost of a divisor that is lost."""
+_SAME_NUMBER = 0.06
+"""What a name costs less that has the number of all others in a matrix."""
 _THRICE = 3
 """How often a name may stand in a sum of three equal links."""
 
@@ -157,10 +159,14 @@ def _divided(here: Here, scope: Scope, summand: bool) -> Iterator[ProgramEdit]:
 
 
 def _instead_of_zero(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
-    """A name for a zero that is given on, or that is an entry."""
+    """A name for a zero that is given on, or that is an entry: soonest d6 beside c6 and s6."""
+    tables = [one for one in here.above if isinstance(one, ast.List | ast.Tuple)][-2:]
+    beside = {found[1] for one in nodes(tables[0]) if (found := numbered(one))} if tables else set()
     for _text, scalar in scope.simple(()):
         if isinstance(scalar, ast.Name) or scope.is_idle(scalar):
-            yield here.instead(scalar, "name", 1.12 + scope.dear(scalar))
+            own = numbered(scalar)
+            less = _SAME_NUMBER if own is not None and {own[1]} == beside else 0.0
+            yield here.instead(scalar, "name", 1.12 + scope.dear(scalar) - less)
 
 
 def _leftmost(node: ast.expr) -> ast.expr:

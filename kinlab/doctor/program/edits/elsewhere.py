@@ -91,7 +91,8 @@ class Elsewhere:
             yield from _other_ranges(here, scope)
         for new in self._lines.get(id(node), ()):
             if _known(new, scope):
-                yield here.instead(new, _kind(node, new), 1.06)
+                table = isinstance(node, ast.List) and isinstance(node.elts[0], ast.List)
+                yield here.instead(new, _kind(node, new), 1.14 if table else 1.06)
         if isinstance(here.parent, ast.Call) and here.holder is here.parent.args:
             mine = ast.unparse(node)
             for text, one in self._given.get((called(here.parent), here.field), {}).items():

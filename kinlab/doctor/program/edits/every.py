@@ -19,7 +19,12 @@ from kinlab.doctor.program.edits.additions import as_a_term
 from kinlab.doctor.program.edits.blocks import of_blocks
 from kinlab.doctor.program.edits.composites import of_composites
 from kinlab.doctor.program.edits.elsewhere import Elsewhere
-from kinlab.doctor.program.edits.forgotten import of_forgotten, of_kinds_of_joints, with_slices
+from kinlab.doctor.program.edits.forgotten import (
+    across,
+    of_forgotten,
+    of_kinds_of_joints,
+    with_slices,
+)
 from kinlab.doctor.program.edits.guards import choices, masks, of_guards
 from kinlab.doctor.program.edits.numbers.data import of_data
 from kinlab.doctor.program.edits.scope import Scope, statement_of, summands
@@ -225,6 +230,7 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Program
                 yield here.within(target, "elts", swapped, "order", 1.07)
         if isinstance(target, ast.Subscript):
             yield from _target(here, target, observed)
+            yield from across(here)
     if isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Subscript):
         yield from _target(here, node.target, observed)
         yield from _for_all_joints(here, scope, observed)

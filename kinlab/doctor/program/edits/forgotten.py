@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from itertools import combinations
 
 from kinlab.doctor.bytecode.syntax import copied, names, nodes
 from kinlab.doctor.program.edits.additions import OtherAxis, summed
 from kinlab.doctor.program.edits.scope import Scope, Turned
+from kinlab.doctor.program.edits.single.entries import keys_of
+from kinlab.doctor.program.edits.single.whole import whole_constant
 from kinlab.doctor.program.observed import Shape
 from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, called, number, written_into
 
@@ -40,11 +43,14 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
             yield from _of_all_joints(here, scope)
         if isinstance(parent, _SET | ast.List | ast.Tuple):
             yield from _crosswise(here)
+        if isinstance(parent, _SET) or isinstance(op, ast.Mult):
+            yield from _of_idle_numbers(here, scope)
         if isinstance(op, ast.Mult) and isinstance(node, ast.Call) and called(node) == "cos":
             yield here.instead(ast.BinOp(number(1), ast.Sub(), node), "missing term", 1.1)
         if isinstance(op, ast.Mult) and not isinstance(node, ast.Name | ast.Call):
             yield from _inside_products(here, scope)
         yield from _of_another_row(here, scope)
+        yield from _of_the_point(here, scope)
         return
     if isinstance(node, ast.Call) and called(node) == "zeros" and not _is_filled(here):
         for _text, vector in scope.simple(shape):
@@ -78,6 +84,25 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
             yield from _of_twists(here, scope)
         if len(shape) == 2:
             yield from _turned_matrices(here, scope, shape)
+
+
+def across(here: Here) -> Iterator[ProgramEdit]:
+    """The entry across from one that is set, forgotten: ``M[0, 1] = M[1, 0] = x``."""
+    target = here.node.targets[0]
+    every = [one for one in nodes(here.above[0]) if isinstance(one, ast.Assign)]
+    filled = {ast.unparse(one) for line in every for one in line.targets}
+    for i, j in combinations(range(len(keys_of(target))), 2):
+        other = copied(target)
+        (one, field, key), (last, place, behind) = (keys_of(other)[k] for k in (i, j))
+        if not (whole_constant(key) and whole_constant(behind)):
+            continue
+        for holder, where, new in ((one, field, behind), (last, place, key)):
+            if isinstance(holder, list):
+                holder[where] = new
+            else:
+                setattr(holder, where, new)
+        if ast.unparse(other) not in filled:
+            yield here.within(here.node, "targets", [target, other], "missing entry", 1.08)
 
 
 def _of_kinds(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
@@ -128,6 +153,33 @@ def _of_another_row(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
                     last = ast.Name(other, ast.Load())
                     test = ast.Compare(node.slice, [ast.Eq()], [last])
                     yield here.instead(ast.IfExp(test, one, node), "condition", 1.12)
+
+
+def _of_the_point(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """A coordinate of the frame's origin for that of a point: ``(p + c)[2]``."""
+    node = here.node
+    if not isinstance(node, ast.Subscript) or not whole_constant(node.slice):
+        return
+    shape = scope.observed.shape(node.value)
+    if shape not in ((2,), _VECTOR) or not _begins(node.value, _ARMS):
+        return
+    own = ast.unparse(node.value)
+    arms = [x for text, x in scope.simple(shape) if text != own and _begins(x, _ARMS)]
+    for arm in arms[:_FEW]:
+        whole = ast.BinOp(node.value, ast.Add(), arm)
+        yield here.instead(ast.Subscript(whole, node.slice, ast.Load()), "missing term", 1.1)
+
+
+def _of_idle_numbers(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """A number that nothing uses any more, times something: ``r*F + I*alpha``."""
+    if isinstance(here.node, ast.Name | ast.Subscript | ast.Attribute):
+        return
+    every = [x for _text, x in scope.simple(()) if isinstance(x, ast.Name | ast.Subscript)]
+    idle = [x for x in every if scope.is_idle(x)]
+    for one in idle[:_FEW]:
+        for other in [x for x in every if x not in idle][: 2 * _FEW]:
+            term = ast.BinOp(one, ast.Mult(), other)
+            yield here.instead(ast.BinOp(here.node, ast.Add(), term), "missing term", 1.12)
 
 
 def _is_entry(parent: ast.AST) -> bool:

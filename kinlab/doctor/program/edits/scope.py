@@ -31,6 +31,8 @@ _LONG = 60
 """Letters up to which an expression is tried in other places."""
 _SHORT = 7
 """Entries of a row of which any may be meant."""
+_FEW_NUMBERS = 6
+"""Names of a module's numbers up to which a part may have forgotten any of them."""
 _UNUSED = 0.2
 """What it is likelier that something is missing which is set and used nowhere."""
 
@@ -180,6 +182,8 @@ class Scope:
             if name in self.unused:
                 self.pieces.setdefault(shape, {}).setdefault(name, plain)
             forgotten = name in trial.program.data and name not in self.present
+            if forgotten and not shape and len(trial.program.data) <= _FEW_NUMBERS:
+                self.pieces.setdefault((), {}).setdefault(name, plain)
             if shape and (name in self.unused or len(shape) > 1 or forgotten):
                 self.lists.setdefault(name, shape[1:])
             if name in self.unused and len(shape) == 1 and shape[0] <= _JOINTS:

@@ -48,13 +48,13 @@ _WHOLE = ("M", "J", "C", "Jv", "Jw", "gravity", "tool_pose", "kinetic", "potenti
 """Things of which an arm has one."""
 _STEPS = ("T", "T0", "R", "R0", "frame_inertia")
 """Things of which it has one for each joint, which a function of the joint's number returns."""
-_OWN = ("cell", "mass", "centre_distance", "Izz", "joint_Izz")
+_OWN = ("cell", "mass", "centre_distance", "Izz", "joint_Izz", "parameter")
 """The arm's own numbers, which do not vary: any value may meet one."""
 _LAYOUTS = ("entries swapped", "rows", "rows swapped", "transposed", "order", "index")
 """Kinds of edit that make another of the textbooks' functions of one."""
 _WHOLLY = ("sign", "factor")
 """Kinds of edit that leave a value right at no pass, where they change it as a whole."""
-_STATES = ("q", "qd", "qdd", "positions", "velocities", "accelerations")
+_STATES = ("q", "qd", "qdd", "positions", "velocities", "accelerations", "given")
 """What is given: another name for it may be meant to be more."""
 _OF_THE_WHOLE = (*_WHOLLY, "transposed", "missing matrix", "missing term")
 """Kinds of edit that may as well stand where a value is worked out."""
@@ -182,13 +182,16 @@ class Grounds:
         if edit.kind == "sign" and isinstance(node, ast.Call) and called(node) == "solve":
             return self._is_once(edit.part, node.args[-1])
         targets = holder.targets if isinstance(holder, ast.Assign) else []
+        alone = _one_name(node) if isinstance(node, ast.Call) else []
+        if alone and [one.id for one in targets if isinstance(one, ast.Name)] == alone:
+            return True  # ``t4 = arctan2(sin(t4), cos(t4))``
         if any(isinstance(one, ast.Name) and one.id in self.renamed for one in targets):
             return False  # another name for it
         while isinstance(node, ast.Call) and len(node.args) == 1:  # ``wrap(t4)``
             node, holder = node.args[0], node
         if isinstance(node, ast.Name) and (edit.part, node.id) in self.worked_out:
             term = isinstance(holder, ast.BinOp) and isinstance(holder.op, ast.Add | ast.Sub)
-            known = {one.what for one in self._of(node, self.observed) or ()}
+            known = {one.what for one in self._of(node, self.observed) or () if not one.form}
             known -= {*_STATES} if edit.kind not in _WHOLLY else set()
             return not (known or (term and edit.kind in ("sign", "missing term")))
         return False
@@ -256,7 +259,7 @@ class Grounds:
                 self.partly.add(id(node.value))
             if _are_flags(observed.of(node.value)):
                 self.flags |= {id(inner) for inner in nodes(node.value)}
-            if good and not isinstance(node.value, ast.Name):
+            if good and not isinstance(node.value, ast.Name) and not _of_either_sign(senses):
                 self.right |= {id(inner) for inner in nodes(node)}
             near = self._is_whole(node.value, observed)
             if near:
@@ -287,7 +290,8 @@ class Grounds:
         return False
 
     def _right_alone(self, node: ast.expr, observed: Observed) -> None:
-        if self._of(node, observed) is not None:
+        senses = self._of(node, observed)
+        if senses is not None and not _of_either_sign(senses):
             self.right |= {id(inner) for inner in nodes(node)}
 
     def _is_whole(self, node: ast.expr, observed: Observed) -> bool:
@@ -366,6 +370,11 @@ class Grounds:
         return {k for k, part in enumerate(self.trial.program.parts) if part.name in inside}
 
 
+def _of_either_sign(senses: list[Sense] | None) -> bool:
+    """Whether they are things of which the opposite is one, too: -h, where h is D_122, is D_211."""
+    return any(one.what == "christoffel_entry" for one in senses or ())
+
+
 def _given(node: ast.AST) -> ast.expr | None:
     """What a statement returns, gives a name to, or puts at the end of a list."""
     if isinstance(node, ast.Assign | ast.Return):
@@ -380,6 +389,14 @@ _STEP = re.compile(r"(.*?)_?(\d)_?(\d)")
 """The name of what leads from one frame to another: ``T03``, ``R_1_2``."""
 
 
+def _one_name(node: Any) -> list[str]:
+    """The name that an expression is made of, beside functions; empty where there are others."""
+    calls = [one.func for one in nodes(node) if isinstance(one, ast.Call)]
+    inside = {name for one in calls for name in names(one)}
+    found = {*names(node)} - inside
+    return [*found] if len(found) == 1 else []
+
+
 def _step(node: Any) -> tuple[str, str, str] | None:
     """What a name of a transform says: which, from where, to where."""
     found = _STEP.fullmatch(node.id) if isinstance(node, ast.Name) else None
@@ -387,13 +404,19 @@ def _step(node: Any) -> tuple[str, str, str] | None:
 
 
 def _worked_out(tree: ast.AST) -> set[str]:
-    """The names to which one statement gives what it works out."""
+    """The names to which one statement gives what it works out, be it wrapped by a next one."""
     given = Counter(
         node.id
         for node in nodes(tree)
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
     )
-    lines = (node for node in nodes(tree) if isinstance(node, ast.Assign))
+    lines = [node for node in nodes(tree) if isinstance(node, ast.Assign)]
+    given -= Counter(
+        one.id
+        for line in lines
+        for one in line.targets
+        if isinstance(one, ast.Name) and _one_name(line.value) == [one.id]
+    )
     pairs = (pair for line in lines for pair in paired(line.targets[0], line.value))
     return {
         one.id

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.check.quantities.fivebar import numbers as plain_numbers
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.numbers.data import (
@@ -34,6 +35,7 @@ from kinlab.doctor.program.places import DATA, ProgramEdit, called
 from kinlab.doctor.program.read import of_numbers
 from kinlab.doctor.program.trial import Trial, named_in
 from kinlab.errors import KinlabError, already_said
+from kinlab.fivebar.linkage import FiveBar
 from kinlab.model.dh import DHLink, DHTable
 from kinlab.model.robot import Robot
 from kinlab.symbolic.vocabulary import vocabulary
@@ -221,8 +223,12 @@ def _shared(table: DHTable, held: Array) -> bool:
     return False
 
 
-def own_numbers(robot: Robot) -> Array:
-    """The arm's own numbers, with their signs."""
+def own_numbers(robot: Any) -> Array:
+    """The arm's, or the five-bar's, own numbers, with their signs."""
+    if isinstance(robot, FiveBar):
+        plain = plain_numbers(robot)
+        both = (plain.l1, plain.l2, plain.arm, plain.crank, plain.crank_com)
+        return np.unique(np.concatenate([*map(np.ravel, both), [plain.e, plain.payload, plain.g]]))
     table = table_of(robot)
     if table is None:
         return np.empty(0)

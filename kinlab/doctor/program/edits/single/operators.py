@@ -36,7 +36,7 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
         if index:
             return
         for new in chains.together(node):
-            yield here.instead(new, "parentheses", 1.09)
+            yield here.instead(new, "parentheses", 1.1)
         for new in chains.multiplied(node):
             yield here.instead(new, "operator", 1.12)
         if all(len(observed.shape(side) or ()) == 2 for side in (left, right)):

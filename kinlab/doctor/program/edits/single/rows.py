@@ -22,6 +22,8 @@ _THREE = 3
 """Sides of a rotation matrix."""
 _PAIR, _NUMBERS = 2, ast.Constant | ast.Name | ast.UnaryOp | ast.Attribute
 """Entries that are exchanged where they are moved on; what rows of numbers are made of."""
+_ONES = 1.14
+"""Cost of ones for a row with zeros."""
 _HALVED = 1.04
 """Cost of the halves of a twist, or of a wrench, for one another."""
 
@@ -40,6 +42,9 @@ def of_sequence(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
     if sum(one is not old for one, old in zip(turned, elements, strict=True)) >= _PAIR:
         unpacked = isinstance(here.node, ast.Tuple) and isinstance(here.parent, ast.Assign)
         yield here.within(here.node, "elts", turned, "sign", 1.25 if unpacked else 1.1)
+    if {getattr(one, "value", None) for one in elements} == {0, 1}:  # all joints turn the tool
+        ones = [ast.Constant(1) for _one in elements]
+        yield here.within(here.node, "elts", ones, "number", _ONES)
     if len(elements) > _PAIR and all(isinstance(one, _NUMBERS) for one in elements):
         for moved in moved_on(elements):
             yield here.within(here.node, "elts", moved, "shifted", 1.13)

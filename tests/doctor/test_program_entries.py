@@ -1,0 +1,136 @@
+"""Slips in entries: one that is not set, a point for its centre, a number that nothing uses."""
+
+from __future__ import annotations
+
+import pytest
+from hand_programs import asked, written
+
+import kinlab as kl
+
+CHRISTOFFEL = """
+import numpy as np
+m, l, lc = [3.0, 2.0, 1.0], [0.5, 0.4, 0.25], [0.25, 0.2, 0.125]
+
+def slopes(q):
+    s2, s3, s23 = np.sin(q[1]), np.sin(q[2]), np.sin(q[1] + q[2])
+    h12 = m[1]*l[0]*lc[1] + m[2]*l[0]*l[1]
+    h13, h23 = m[2]*l[0]*lc[2], m[2]*l[1]*lc[2]
+    D = np.zeros((3, 3, 3))
+    D[0, 0, 1] = -2*h12*s2 - 2*h13*s23
+    D[0, 0, 2] = -2*h13*s23 - 2*h23*s3
+    D[0, 1, 1] = D[1, 0, 1] = -h12*s2 - h13*s23
+    D[0, 1, 2] = D[1, 0, 2] = -h13*s23 - 2*h23*s3
+    D[0, 2, 1] = D[2, 0, 1] = -h13*s23
+    D[0, 2, 2] = D[2, 0, 2] = -h13*s23 - h23*s3
+    D[1, 1, 2] = -2*h23*s3
+    D[1, 2, 2] = D[2, 1, 2] = -h23*s3
+    return D
+
+def f(q, v):
+    D = slopes(q)
+    C = np.zeros((3, 3))
+    for i in range(3):
+        for j in range(3):
+            for k in range(3):
+                C[i, j] += 0.5*(D[i, j, k] + D[i, k, j] - D[j, k, i])*v[k]
+    return C
+"""
+CRANKS = """
+import numpy as np
+l1, l2 = 0.3, 0.5
+e = 0.2/np.sqrt(2)
+H = np.array([[0, 1], [-1, 0]])
+
+def crank(x, y, s, mode):
+    A, B = 2*l1*(s*e - x), -2*l1*y
+    C = l2**2 - e**2 - l1**2 - x**2 - y**2 + 2*s*e*x
+    for sign in (1, -1):
+        th = 2*np.arctan2(B + sign*np.sqrt(A**2 + B**2 - C**2), A + C)
+        u = np.array([np.cos(th), np.sin(th)])
+        w = (np.array([x - s*e, y]) - l1*u)/l2
+        if np.sign(u @ H @ w) == mode:
+            return u, w
+
+def f(xy, mode):
+    J = np.zeros((2, 2))
+    for i, s in enumerate((1, -1)):
+        u, w = crank(xy[0], xy[1], s, mode[i])
+        J[i] = w/(l1*(u @ H @ w))
+    return J
+"""
+CENTRES = """
+import numpy as np
+a, alpha, d = [0, 0.4318, 0.0203, 0, 0, 0], np.deg2rad([90, 0, -90, 90, -90, 0]), [0, 0, 0.15005, 0.4318, 0, 0]
+m = [0, 17.4, 4.8, 0.82, 0.34, 0.09]
+rc = np.array([[0, 0, 0], [-0.3638, 0.006, 0.2275], [-0.0203, -0.0141, 0.07], [0, 0.019, 0], [0, 0, 0], [0, 0, 0.032]])
+
+def f(q):
+    R, p, V = np.eye(3), np.zeros(3), 0.0
+    for i in range(6):
+        ct, st, ca, sa = np.cos(q[i]), np.sin(q[i]), np.cos(alpha[i]), np.sin(alpha[i])
+        p = p + R @ np.array([a[i]*ct, a[i]*st, d[i]])
+        R = R @ np.array([[ct, -st*ca, st*sa], [st, ct*ca, -ct*sa], [0, sa, ca]])
+        c = R @ rc[i]
+        V += m[i]*9.81*(p + c)[2]
+    return V
+"""
+STEP = """
+import numpy as np
+l1, l2, l3 = 0.5, 0.4, 0.25
+
+def f(q):
+    s1, c1 = np.sin(q[0]), np.cos(q[0])
+    s12, c12 = np.sin(q[0] + q[1]), np.cos(q[0] + q[1])
+    s123, c123 = np.sin(q.sum()), np.cos(q.sum())
+    return np.array([
+        [-l1*s1 - l2*s12 - l3*s123, -l2*s12 - l3*s123, -l3*s123],
+        [l1*c1 + l2*c12 + l3*c123, l2*c12 + l3*c123, l3*c123],
+        [1, 1, 1],
+    ])
+"""
+PROGRAMS = {
+    "symbols": ("planar3r", "coriolis_matrix", CHRISTOFFEL),
+    "cranks": ("isotropic", "fivebar_jacobian", CRANKS),
+    "centres": ("puma560", "potential_energy", CENTRES),
+    "rows": ("planar3r", "planar_jacobian", STEP),
+}
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_the_programs_are_right(name: str) -> None:
+    robot, quantity, text = PROGRAMS[name]
+    assert kl.compare(robot, quantity, written(text)).agrees
+
+
+@pytest.mark.parametrize(
+    ("name", "slips", "told"),
+    [
+        pytest.param("symbols", [("D[0, 2, 1] = D[2, 0, 1] = -h13", "D[0, 2, 1] = -h13")],
+                     "should be `D[0, 2, 1] = D[2, 0, 1] = -h13*s23`", id="the entry across"),
+        pytest.param("cranks", [("w/(l1*(u @ H @ w))", "w/(u @ H @ w)"), ("(1, -1)):\n        u", "(-1, 1)):\n        u")],
+                     "`for i, s in enumerate((-1, 1))` should be", id="the legs, and a length that is used elsewhere"),
+        pytest.param("centres", [("(p + c)[2]", "p[2]")], "`V += m[i]*9.81*(p[2] + c[2])`", id="the origin for the centre"),
+        pytest.param("rows", [("[1, 1, 1]", "[0, 0, 1]")], "`[0, 0, 1]` should be `[1, 1, 1]`", id="all joints turn the tool"),
+    ],
+)  # fmt: skip
+def test_a_slip_in_an_entry(name: str, slips: list, told: str) -> None:
+    robot, quantity, text = PROGRAMS[name]
+    for right, slip in slips:
+        assert text.count(right) == 1
+        text = text.replace(right, slip)
+    found, good = asked(text, robot, quantity)
+    assert good and told in found.sentence, str(found)
+
+
+def test_two_numbers_in_front_are_told_as_one() -> None:
+    text = """
+import numpy as np
+m2, l1, l2 = 1.5, 0.5, 0.4
+
+def f(q, v):
+    h = -2*m2*l1*l2*np.sin(q[1])
+    return np.array([2*h*v[0]*v[1] + h*v[1]**2, -h*v[0]**2])
+"""
+    assert kl.compare("planar2r", "coriolis_torques", written(text.replace("-2*m2", "-m2"))).agrees
+    found, good = asked(text, "planar2r", "coriolis_torques")
+    assert good and "should be `h = -m2*l1*l2*np.sin(q[1])`" in found.sentence, str(found)
