@@ -119,6 +119,7 @@ PHRASES = {
     "C": N_("the Coriolis matrix"),
     "C_entry": N_("entry ({of}) of the Coriolis matrix"),
     "C v": N_("the Coriolis and centrifugal torques"),
+    "bias": N_("the torques of Coriolis, centrifugal and gravity together"),
     "C_v_entry": N_("the Coriolis and centrifugal torque of {joint}"),
     "christoffel": N_("Christoffel's symbols"),
     "christoffel_entry": N_("Christoffel's symbol ({of})"),

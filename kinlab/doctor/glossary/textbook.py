@@ -373,6 +373,7 @@ class _Gathered:
             C = dynamics.coriolis_matrix(robot, q, v)
             self.put("C", C)
             self.put("C v", C @ v)
+            self.put("bias", C @ v + gravity)
             self.each("C_v_entry", C @ v)
             for (i, j), x in np.ndenumerate(C):
                 self.put("C_entry", np.asarray(x), of=f"{i + 1}, {j + 1}", rank=1)

@@ -62,7 +62,7 @@ _FURTHER = 6000
 """Edits that are run all at once where there is no time to run each."""
 _QUICK = 1300
 """Edits that have been run alone by then, of programs of which lanes are worth the time."""
-_MORE_WORK, _WOVEN = 22_000_000, 5000
+_MORE_WORK, _WOVEN = 70_000_000, 5000
 """Work that may be done for them; what putting one in amounts to."""
 _AT_ONCE = 400
 """How many of them at a time."""

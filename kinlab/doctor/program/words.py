@@ -64,7 +64,7 @@ _WHAT = {
     "order": N_("the order is exchanged"),
     "order of lines": N_("what the line uses is updated too early, or too late"),
     "loop": N_("the loop leaves one out, or takes one too many"),
-    "direction": N_("the loop runs the other way"),
+    "direction": N_("it runs the other way"),
     "products' signs": N_("the products of inertia have the other sign"),
     "condition": N_("the condition is wrong"),
     "entries swapped": N_("two entries are exchanged"),
@@ -91,6 +91,7 @@ _WHAT = {
     "before the loop": N_("the line stands before the loop, and belongs in it"),
     "missing statement": N_("a line is missing"),
     "missing argument": N_("an argument is missing"),
+    "kind of joint": N_("it is a hinge's column, and the joint is a slide"),
     "missing entry": N_("the entry across from it is to be set, too"),
     "missing matrix": N_("the product with a rotation or another matrix is missing"),
 }

@@ -37,6 +37,8 @@ _TWIST = 6
 """Rows of a Jacobian, or of a twist."""
 _NEXT_ANGLE = 1.08
 """Cost of the angle of the joint before, or next, in a sum: c12 for c2."""
+_OF_AN_ANGLE = 0.1
+"""What a factor costs more that is an angle: of these sines and cosines are factors."""
 _DIVIDED = 1.07
 """Cost of a divisor that is lost."""
 _SAME_NUMBER = 0.06
@@ -201,6 +203,8 @@ def _matrices(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
             for turned in (matrix, ast.Attribute(matrix, "T", ast.Load())):
                 if turned is not matrix and isinstance(matrix, ast.Attribute):
                     continue
+                if turned is not matrix and text == ast.unparse(node):
+                    continue  # a rotation's product with its own transpose is 1
                 if size == shape[0]:
                     new = ast.BinOp(turned, ast.MatMult(), node)
                     yield here.instead(new, "missing matrix", cost)
@@ -250,7 +254,9 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
         elif isinstance(node, ast.Attribute) and isinstance(scalar, ast.Name):
             yield here.instead(scalar, "name", 1.03 if node.attr == text else 1.08 + dear)
         if term:
-            yield here.instead(ast.BinOp(node, ast.Mult(), scalar), "missing factor", 1.08 + dear)
+            angle = _OF_AN_ANGLE * (text in scope.turned)
+            new = ast.BinOp(node, ast.Mult(), scalar)
+            yield here.instead(new, "missing factor", 1.08 + dear + angle)
             if isinstance(scalar, ast.Name | ast.Subscript):
                 square = ast.BinOp(scalar, ast.Pow(), number(2))
                 new = ast.BinOp(node, ast.Mult(), square)

@@ -58,6 +58,10 @@ class _Company:
     at: int | None = None
 
 
+_NOTHING = 1.05
+"""Cost of zeros for what is given beside them."""
+
+
 class Elsewhere:
     """What the expressions of a program stand together with, and the lines of the same names.
 
@@ -98,6 +102,11 @@ class Elsewhere:
             for text, one in self._given.get((called(here.parent), here.field), {}).items():
                 if text != mine and observed.shape(one) == (shape or ()) and _known(one, scope):
                     yield here.instead(one, "name", 1.05 if is_nothing(node) else 1.1)
+        if isinstance(here.parent, ast.Call) and here.holder is here.parent.args and shape:
+            for one in here.parent.args:  # the mass matrix's columns: no rates, no gravity
+                beside = observed.of(one) if isinstance(one, ast.Name) and one is not node else None
+                if beside and beside.shape == shape and not any(map(np.any, beside.values)):
+                    yield here.instead(one, "name", _NOTHING)
         if is_nothing(node) and isinstance(here.parent, ast.Assign):
             yield from _of_the_mirror(here)
         if shape is None or isinstance(node, ast.Constant | ast.List | ast.Tuple):

@@ -64,6 +64,8 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
         yield from _of_idle_points(here, scope)
     if isinstance(op, _SUMS):
         yield from _with_angles(here, scope)
+    if len(shape) == 1 and scope.has_numpy and isinstance(parent, ast.BinOp):
+        yield from _as_a_diagonal(here, scope, shape)
     if shape == _VECTOR and isinstance(op, ast.Add):
         yield from _turned_beside(here)
     if scope.has_numpy and len(shape) == 1 and isinstance(node, ast.Name | ast.Subscript):
@@ -180,6 +182,19 @@ def _of_idle_numbers(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
         for other in [x for x in every if x not in idle][: 2 * _FEW]:
             term = ast.BinOp(one, ast.Mult(), other)
             yield here.instead(ast.BinOp(here.node, ast.Add(), term), "missing term", 1.12)
+
+
+def _as_a_diagonal(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
+    """A row for the matrix that has it on the diagonal: ``M + np.diag(I)``, ``np.diag(I) @ w``."""
+    parent = here.parent
+    assert isinstance(parent, ast.BinOp)
+    beside = parent.right if parent.left is here.node else parent.left
+    other = scope.observed.shape(beside)
+    added = isinstance(parent.op, _SUMS) and other == (*shape, *shape)
+    turned = isinstance(parent.op, ast.MatMult) and beside is parent.right and other == shape
+    if added or turned:
+        diagonal = ast.Attribute(ast.Name("np", ast.Load()), "diag", ast.Load())
+        yield here.instead(ast.Call(diagonal, [here.node], []), "function", 1.06)
 
 
 def _is_entry(parent: ast.AST) -> bool:

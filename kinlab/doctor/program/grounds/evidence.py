@@ -44,7 +44,20 @@ _MEANT = 0.1
 transforms of one whose names do not follow on one another."""
 _AGREED = 0.04
 """What it costs more to give a function something else for what has the argument's own name."""
-_WHOLE = ("M", "J", "C", "Jv", "Jw", "gravity", "tool_pose", "kinetic", "potential", "C v", "tau")
+_WHOLE = (
+    "M",
+    "J",
+    "C",
+    "Jv",
+    "Jw",
+    "gravity",
+    "tool_pose",
+    "kinetic",
+    "potential",
+    "C v",
+    "bias",
+    "tau",
+)
 """Things of which an arm has one."""
 _STEPS = ("T", "T0", "R", "R0", "frame_inertia")
 """Things of which it has one for each joint, which a function of the joint's number returns."""
@@ -80,6 +93,7 @@ class Grounds:
         self.values: set[float] = set()
         self.sound: set[int] = set()
         self.trusted: set[int] = set()
+        self.doubted: set[int] = set()
         self.helpers: set[int] = set()
         self.mirrored: set[int] = set()
         self.crossing: set[int] = set()
@@ -107,6 +121,7 @@ class Grounds:
                 if seen is not None and seen.shape == () and len({*map(float, seen.values)}) == 1:
                     own = float(seen.values[0])
                     self.values |= {own, 1 / own} if own else set()
+        self.trusted -= self.doubted  # at rest what moves is silent
         self._below()
         self.helpers, self.mirrored = true_helpers(trial, observed)
         self.crossing = {k for k in self.helpers if self._is_skew(trial.trees[k])}
@@ -264,6 +279,8 @@ class Grounds:
             near = self._is_whole(node.value, observed)
             if near:
                 self.trusted |= self._called(node) - {0}
+            elif isinstance(node.value, ast.Call) and observed.of(node.value) is not None:
+                self.doubted |= {k for k in self._called(node.value.func) if not good}
             if isinstance(node, ast.Return) and observed.of(node.value) is not None:
                 told = senses or []
                 numbers = {one.number for one in told}

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from functools import cached_property
-from itertools import islice
+from itertools import combinations, islice
 from typing import Any
 
 import numpy as np
@@ -47,10 +47,14 @@ _THREE, _KEPT = 600, 6_000_000
 """Edits of which any three may go together, fewer where their pairs have more numbers."""
 _TRIED = 2000
 """Threes that are run, of each way to tell them."""
-_ALL, _LEAST = 170_000_000, 120_000_000
+_ALL, _LEAST = 180_000_000, 90_000_000
 """Work that may be done for single edits and those tried together; the least for these."""
 _LIKELY, _PRODUCT = 300, 600_000
 """Edits of which any three are run together, the product of whose ranks is no larger."""
+_SOONEST = 60
+"""Edits of which any three are run, whatever speaks against them."""
+_GAINS = 4
+"""Pairs beside which a third is looked for."""
 _GAINING = 30
 """Edits that make numbers right, with which any other is run."""
 _BITS = 63
@@ -105,6 +109,7 @@ class TriedTogether:
         self.weights = np.random.default_rng(5).uniform(0.5, 1.5, size)
         self.three = min(_THREE, math.isqrt(_KEPT // max(size, 1)))
         self.both = np.full((self.three, self.three, size), np.nan)
+        self.gains: list[tuple[int, float, Chosen]] = []
         self.chosen: list[Any] = []
         self.marks: list[Array] = []
 
@@ -177,6 +182,7 @@ class TriedTogether:
                 continue
             found += [(int(i), int(j)) for i, j in right]
             self._keep(chosen, rows)
+            self._keep_gains(chosen, rows)
         if found:
             yield sorted(found, key=self.known.cost)
 
@@ -294,6 +300,25 @@ class TriedTogether:
         one, other = chosen[few].T
         self.both[one, other] = self.both[other, one] = rows[few]
 
+    def _keep_gains(self, chosen: Any, rows: Array) -> None:
+        """The pairs that make most of what is wrong right, and spoil nothing."""
+        size = rows.shape[1]
+        right = np.abs(rows - self.known.goal[:size]) <= self.known.near
+        wrong = self.known.wrong[:size]
+        gains = np.where((right | wrong).all(axis=1), (right & wrong).sum(axis=1), 0)
+        best = np.argsort(-gains, kind="stable")[:_GAINS]
+        some = [(int(gains[k]), self.known.cost(tuple(chosen[k])), tuple(map(int, chosen[k])))
+                for k in best if gains[k]]  # fmt: skip
+        ranked = sorted({*self.gains, *some}, key=lambda one: (-one[0], *one[1:]))
+        self.gains = ranked[:_GAINS]
+
+    def ahead(self) -> list[Chosen]:
+        """Pairs that make more numbers right than either of their edits does alone."""
+        single = [*self.known.gaining]
+        alone = (self.known.right & self.known.wrong).sum(axis=1)
+        most = int(max((alone[k] for k in single), default=0))
+        return [pair for count, _cost, pair in self.gains if count > most]
+
     def threes(self) -> list[Chosen]:
         """Any three edits that make the program right as far as their pairs tell, likeliest first.
 
@@ -312,11 +337,22 @@ class TriedTogether:
         """Any three of the likeliest edits that nothing speaks against, tried themselves."""
         if not self.usable:
             return []
-        for some in self._lots(self._possible()):
-            right, _rows = self._right(some)
-            if len(right):
-                return sorted((tuple(map(int, one)) for one in right), key=self.known.cost)
+        possible = self._possible()
+        for threes in (possible, self._likeliest_threes(possible)):
+            for some in self._lots(threes):
+                right, _rows = self._right(some)
+                if len(right):
+                    return sorted((tuple(map(int, one)) for one in right), key=self.known.cost)
         return []
+
+    def _likeliest_threes(self, possible: Any) -> Any:
+        """Any three of the very likeliest: what is zero as it is may change with two of them."""
+        few = self.sound[:_SOONEST]
+        every = np.array([*combinations(range(len(few)), 3)]).reshape(-1, 3)
+        every = every[np.argsort((every + 1).prod(axis=1), kind="stable")]
+        known = {*map(tuple, np.sort(possible, axis=1).tolist())}
+        fresh = [k for k, one in enumerate(few[every].tolist()) if tuple(sorted(one)) not in known]
+        return few[every[fresh]]
 
     def _possible(self) -> Any:
         """Threes of which each number that only one of them changes is made right by it.

@@ -133,6 +133,11 @@ def _other_function(here: Here, name: str) -> Iterator[ProgramEdit]:
                 continue  # numbers are rather wrong themselves
             if name in family and other != name and isinstance(node.func, ast.Attribute):
                 yield here.within(node.func, "attr", other, "function", 1.14)
+    if name == "cumsum" and isinstance(node.func, ast.Attribute) and len(node.args) == 1:
+        back = ast.Slice(None, None, number(-1))  # what lies behind: forces and masses
+        inner = ast.Subscript(node.args[0], back, ast.Load())
+        turned = ast.Subscript(ast.Call(node.func, [inner], []), back, ast.Load())
+        yield here.instead(turned, "direction", 1.1)
     if name in ("ones", "zeros", "full") and isinstance(node.func, ast.Attribute) and node.args:
         first = node.args[0]
         size = first.elts[0] if isinstance(first, ast.Tuple) and first.elts else first

@@ -16,6 +16,21 @@ OF_RODS = {3: 12, 12: 3}
 """A rod's moments of inertia about its end, and about its middle, are its mass by these."""
 
 
+_ANGLE_FOR_ONE = 1.05
+"""Cost of the angle for a 1 in front of its sine: ``th - sin(th)``."""
+
+
+def _angle_beside(here: Here) -> ast.expr | None:
+    """The angle whose sine is taken away from a 1, if that is a name."""
+    parent = here.parent
+    if not isinstance(parent, ast.BinOp) or not isinstance(parent.op, ast.Sub):
+        return None
+    call = parent.right if parent.left is here.node else None
+    if not isinstance(call, ast.Call) or called(call) != "sin" or len(call.args) != 1:
+        return None
+    return call.args[0] if isinstance(call.args[0], ast.Name) else None
+
+
 def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
     value = here.node.value
     if isinstance(value, bool) or not isinstance(value, int | float):
@@ -42,6 +57,8 @@ def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
         yield here.within(here.node, "value", OF_RODS[value], "number", 1.05)
     if given is not None and called(given) == "append" and value in (0, 1):
         yield here.within(here.node, "value", type(value)(1 - value), "number", 1.05)
+    if value == 1 and (angle := _angle_beside(here)) is not None:
+        yield here.instead(angle, "name", _ANGLE_FOR_ONE)
     for factor in (2, 0.5, 3, 1 / 3, 4, 0.25):
         new = value * factor
         new = int(new) if new == int(new) else new

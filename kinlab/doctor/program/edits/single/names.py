@@ -9,7 +9,7 @@ from kinlab.doctor.bytecode.syntax import factors
 from kinlab.doctor.program.edits.scope import PI, Scope, Turned, statement_of
 from kinlab.doctor.program.edits.single.constants import OF_RODS
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import Here, ProgramEdit
+from kinlab.doctor.program.places import Here, ProgramEdit, paired
 
 _FEW = 8
 """Attributes among which a wrong one is looked for early."""
@@ -17,6 +17,8 @@ _OF_ITS_MASS = 0.015
 """What it costs less where the mass of its link stands beside it."""
 _OF_ROD = 0.04
 """What that costs more in a rod's moment of inertia, whose number is as soon mistaken."""
+_UNCHANGED = 0.15
+"""What it costs more to give a name its own value: the line would do nothing."""
 _HALF = 1.03
 """Cost of a length for the distance of the centre, where that is half of it, or that for it."""
 _IN_LINE = 1.12
@@ -47,6 +49,10 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
             if scope.are_halves(other, node.id):
                 cost = _HALF + _OF_ROD * _in_a_rods_moment(here)
                 cost -= _OF_ITS_MASS * _is_of_the_mass(here, other)
+            elif _carries_another(here, other):
+                cost = _HALF
+            if other in _set_here(here):
+                cost += _UNCHANGED
             if other == across and {other, node.id} <= scope.sines:
                 kind, cost = "sin/cos", 1.04
             yield here.instead(ast.Name(other, ast.Load()), kind, cost)
@@ -61,17 +67,38 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
                 yield here.instead(ast.Name(other, ast.Load()), "name", cost)
 
 
+def _set_here(here: Here) -> list[str]:
+    """The name to which the statement gives a name as it is: ``o = o`` would do nothing."""
+    line = statement_of(here.above)
+    if not isinstance(line, ast.Assign):
+        return []
+    pairs = (pair for target in line.targets for pair in paired(target, line.value))
+    return [one.id for one, what in pairs if what is here.node and isinstance(one, ast.Name)]
+
+
+def _carries_another(here: Here, length: str) -> bool:
+    """Whether a centre's distance carries another link's mass, as lengths do: ``m2*lc1``."""
+    own = here.node.id
+    centre = own != length and own.replace("c", "", 1) == length
+    masses = {one[len(_letters(one)) :] for one in _masses_beside(here)}
+    return centre and bool(masses) and own[len(_letters(own)) :] not in masses
+
+
 def _is_of_the_mass(here: Here, name: str) -> bool:
     """Whether a name has the number of a mass that it is multiplied with: ``m2*l1*lc2``."""
+    own = name[len(_letters(name)) :]
+    return own != "" and any(one[len(_letters(one)) :] == own for one in _masses_beside(here))
+
+
+def _masses_beside(here: Here) -> list[str]:
+    """The masses that a name is multiplied with."""
     product: ast.expr = here.node
     for above in reversed(here.above):
         if not isinstance(above, ast.BinOp) or not isinstance(above.op, ast.Mult):
             break
         product = above
     parts = (x.operand if isinstance(x, ast.UnaryOp) else x for x in factors(product))
-    masses = (x.id for x in parts if isinstance(x, ast.Name) and x.id[0] in "mM")
-    own = name[len(_letters(name)) :]
-    return own != "" and any(one[len(_letters(one)) :] == own for one in masses)
+    return [x.id for x in parts if isinstance(x, ast.Name) and x.id[0] in "mM"]
 
 
 def _in_a_rods_moment(here: Here) -> bool:

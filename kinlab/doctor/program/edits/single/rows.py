@@ -10,7 +10,7 @@ from typing import Any
 from kinlab.doctor.bytecode.syntax import shallow
 from kinlab.doctor.program.edits.numbers.data import moved_on, other_words
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import Here, ProgramEdit
+from kinlab.doctor.program.places import Here, ProgramEdit, called
 
 _LONGEST = 6
 """Entries of a list of which any two may have been exchanged."""
@@ -22,6 +22,8 @@ _THREE = 3
 """Sides of a rotation matrix."""
 _PAIR, _NUMBERS = 2, ast.Constant | ast.Name | ast.UnaryOp | ast.Attribute
 """Entries that are exchanged where they are moved on; what rows of numbers are made of."""
+_SLIDE = 1.08
+"""Cost of a slide's column for a hinge's."""
 _ONES = 1.14
 """Cost of ones for a row with zeros."""
 _HALVED = 1.04
@@ -38,10 +40,14 @@ def of_sequence(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
     yield from _across(here, elements)
     yield from _between(here, elements)
     yield from _signs_of_two(here, elements)
+    yield from _laid_out(here, elements)
     turned = [_opposite(one) for one in elements]
     if sum(one is not old for one, old in zip(turned, elements, strict=True)) >= _PAIR:
         unpacked = isinstance(here.node, ast.Tuple) and isinstance(here.parent, ast.Assign)
         yield here.within(here.node, "elts", turned, "sign", 1.25 if unpacked else 1.1)
+    slid = _as_of_a_slide(elements)
+    if slid:
+        yield here.within(here.node, "elts", slid, "kind of joint", _SLIDE)
     if {getattr(one, "value", None) for one in elements} == {0, 1}:  # all joints turn the tool
         ones = [ast.Constant(1) for _one in elements]
         yield here.within(here.node, "elts", ones, "number", _ONES)
@@ -52,6 +58,48 @@ def of_sequence(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
     if len(points) == len(elements) > _PAIR:  # those of the frames before, of which one is the base
         base: ast.expr = ast.parse("np.zeros(3)", mode="eval").body
         yield here.within(here.node, "elts", [base, *elements[:-1]], "shifted", 1.13)
+
+
+_LAYOUTS = (
+    ((0, 3, 4), (3, 1, 5), (4, 5, 2)),  # xx, yy, zz, xy, xz, yz
+    ((0, 1, 2), (1, 3, 4), (2, 4, 5)),  # xx, xy, xz, yy, yz, zz
+    ((0, 1, 3), (1, 2, 4), (3, 4, 5)),  # xx, xy, yy, xz, yz, zz
+    ((0, 5, 4), (5, 1, 3), (4, 3, 2)),  # xx, yy, zz, yz, xz, xy
+)
+"""Orders in which six numbers of an inertia tensor are kept."""
+
+
+def _laid_out(here: Here, rows: Sequence[ast.expr]) -> Iterator[ProgramEdit]:
+    """A tensor of six numbers in a row that are kept in another order."""
+    entries = [x for one in rows if isinstance(one, ast.List | ast.Tuple) for x in one.elts]
+    if len(entries) != _THREE**2 or not all(isinstance(x, ast.Subscript) for x in entries):
+        return
+    kept = {ast.unparse(x.value) for x in entries if isinstance(x, ast.Subscript)}
+    places_ = [getattr(getattr(x, "slice", None), "value", None) for x in entries]
+    own = tuple(tuple(places_[k : k + _THREE]) for k in range(0, _THREE**2, _THREE))
+    if len(kept) != 1 or own not in _LAYOUTS:
+        return
+    whole = entries[0].value if isinstance(entries[0], ast.Subscript) else entries[0]
+    for layout in _LAYOUTS:
+        if layout != own:
+            new = [ast.List([_at(whole, k) for k in row], ast.Load()) for row in layout]
+            yield here.within(here.node, "elts", new, "order", 1.08)
+
+
+def _at(whole: ast.expr, k: int) -> ast.expr:
+    return ast.Subscript(whole, ast.Constant(k), ast.Load())
+
+
+def _as_of_a_slide(elements: Sequence[ast.expr]) -> list[ast.expr]:
+    """A slide's column for a hinge's: ``[z, 0]`` for ``[z x r, z]``; empty of other rows."""
+    if len(elements) != _PAIR:
+        return []
+    moments = [isinstance(one, ast.Call) and called(one) == "cross" for one in elements]
+    if sum(moments) != 1:
+        return []
+    axis = elements[moments.index(False)]
+    nothing: ast.expr = ast.parse("np.zeros(3)", mode="eval").body
+    return [axis, nothing] if moments[0] else [nothing, axis]
 
 
 def _between(here: Here, rows: Sequence[ast.expr]) -> Iterator[ProgramEdit]:
