@@ -78,6 +78,7 @@ _ALONE = re.compile(
 )
 """Text without words: names of one letter, and functions."""
 _GLUED_NUMBER = re.compile(r"(?<![\w.])\d+[A-Za-z]{2}")
+_WORD_BELOW = re.compile(r"_[A-Za-z]{2}")
 _NUMBERED_NAME = re.compile(r"(?<![A-Za-z])[A-Za-z]\d")
 _WORDS = """
     lc qd qdd th thd dq ddq dth tau phi psi eta pi xd yd vx vy vz ax ay az ux uy wx wy wz px py pz
@@ -212,7 +213,7 @@ def _runs_together(text: str) -> bool:
     words = re.findall(r"[A-Za-z]+", text)
     letters = [re.sub(r"(?:sin|cos|tan|sqrt)$", "", word) for word in words]
     apart = (len(x) < 2 or (x not in _WORDS and len(x) < 4) for x in letters)
-    return "[" not in text and all(apart)
+    return not _WORD_BELOW.search(text) and "[" not in text and all(apart)
 
 
 def is_latex(text: str) -> bool:
@@ -642,7 +643,7 @@ def _equations(text: str) -> list[str]:
     return [line for line in found if line]
 
 
-_DETERMINANT = re.compile(r"\\?det\s*(?:\(?\s*J\s*\)?)?|\|\s*J\s*\|")
+_DETERMINANT = re.compile(r"\\det\s*(?:\(?\s*J\s*\)?)?|\|\s*J\s*\|")
 """The determinant of J as it is typed."""
 
 

@@ -2,13 +2,15 @@
 
 Kinds: numbers for some names, all numbers, numbers to three or four digits, constants such as 0.333
 and 1.5708, g as 9.8 or 10, symbols with rounded numbers, a C that is not Christoffel's, a potential
-with another zero, and functions with rounded numbers. ``python scripts/bench/correct_forms.py
---count 10000`` prints the count by kind and every false alarm.
+with another zero, functions with rounded numbers, and recursions of which some numbers are rounded.
+``python scripts/bench/correct_forms.py --count 10000`` prints the count by kind and every false
+alarm.
 """
 
 from __future__ import annotations
 
 import argparse
+import linecache
 import random
 import re
 import tempfile
@@ -186,8 +188,70 @@ def functions(rng: random.Random) -> Iterator[tuple[str, str, str, Any]]:
             continue
         yield "function, rounded g", robot.name, quantity, rounded_g
         yield "function, another zero", robot.name, "potential_energy", another_zero
+        yield "program, some numbers rounded", *recursion(rng)
         if robot.n > 1:
             yield "function, another C", robot.name, "coriolis_matrix", another_split
+
+
+RECURSION = """
+import numpy as np
+ROWS = {rows}
+G = {gravity}
+
+def f(q, qd, qdd):
+    x, z, n = np.cross, np.array([0, 0, 1.0]), len(ROWS)
+    w, wd, vd, links = np.zeros(3), np.zeros(3), -np.array(G), []
+    for k, (a, alpha, d, theta, slides, m, c, I, Ia) in enumerate(ROWS):
+        t, d = (theta, d + q[k]) if slides else (theta + q[k], d)
+        ct, st, ca, sa = np.cos(t), np.sin(t), np.cos(alpha), np.sin(alpha)
+        R = np.array([[ct, -st*ca, st*sa], [st, ct*ca, -ct*sa], [0, sa, ca]])
+        p, c, I = np.array([a, d*sa, d*ca]), np.array(c), np.array(I)
+        if not slides:
+            wd = wd + z*qdd[k] + x(w, z*qd[k])
+            w = w + z*qd[k]
+        w, wd, vd = R.T @ w, R.T @ wd, R.T @ vd
+        vd = vd + x(wd, p) + x(w, x(w, p))
+        if slides:
+            vd = vd + R.T @ z*qdd[k] + 2*x(w, R.T @ z*qd[k])
+        F = m*(vd + x(wd, c) + x(w, x(w, c)))
+        links.append((R, p, c, F, I @ wd + x(w, I @ w)))
+    f_, n_, tau, R_next = np.zeros(3), np.zeros(3), np.zeros(n), np.eye(3)
+    for k in reversed(range(n)):
+        R, p, c, F, N = links[k]
+        f_, n_ = R_next @ f_, R_next @ n_
+        n_ = n_ + x(p, f_) + x(p + c, F) + N
+        f_, R_next = f_ + F, R
+        tau[k] = (f_ if ROWS[k][4] else n_) @ (R.T @ z) + ROWS[k][8]*qdd[k]
+    return tau
+"""
+
+
+def recursion(rng: random.Random) -> tuple[str, str, Any]:
+    """Newton-Euler of a standard table with some of its numbers rounded, as a program."""
+    name = rng.choice(["planar2r_rods", "puma560", "stanford", "ur5", "ur10"])
+    table = kl.load(name).table
+    share, count = rng.choice([0.1, 0.5, 1.0]), rng.choice([3, 4, 5, 6])
+
+    def typed(value: float) -> float:
+        near = any(abs(value - k * np.pi / 12) < 1e-9 for k in range(-24, 25))
+        return value if near or rng.random() > share else float(f"{value:.{count}g}")
+
+    rows = []
+    for link in table.links:
+        plain = [typed(float(x)) for x in (link.a, link.alpha, link.d, link.theta)]
+        com = [typed(float(x)) for x in np.ravel(link.com)]
+        inertia = [[typed(float(x)) for x in row] for row in np.asarray(link.inertia)]
+        inertia = [[inertia[min(i, j)][max(i, j)] for j in range(3)] for i in range(3)]
+        slides = link.joint == "prismatic"
+        rows.append((*plain, slides, typed(link.mass), com, inertia, typed(link.armature)))
+    turn = np.asarray(table.base)[:3, :3]
+    gravity = [round(float(x), 12) for x in turn.T @ np.asarray(table.gravity)]
+    text = RECURSION.format(rows=rows, gravity=gravity)
+    space: dict[str, Any] = {"__name__": "recursion"}
+    place = f"<recursion {rng.random()}>"
+    linecache.cache[place] = (len(text), None, text.splitlines(keepends=True), place)
+    exec(compile(text, place, "exec"), space)  # noqa: S102  the program above
+    return name, "inverse_dynamics", space["f"]
 
 
 def run(count: int, seed: int, folder: Path) -> tuple[Counter[str], list[str]]:

@@ -88,7 +88,95 @@ def f(q):
         [1, 1, 1],
     ])
 """
+ABSOLUTE = """
+import numpy as np
+m, l = np.array([3.0, 2.0, 1.0]), np.array([0.5, 0.4, 0.25])
+lever = np.tril(np.tile(l, (3, 1)), -1) + np.diag(l/2)
+h, static, I = np.einsum('k,ki,kj->ij', m, lever, lever), m @ lever, m*l**2/12
+
+def fold(t):
+    return np.cumsum(t[::-1])[::-1]
+
+def f(q, qd, qdd):
+    phi, dphi, ddphi = np.cumsum(q), np.cumsum(qd), np.cumsum(qdd)
+    delta = phi[:, None] - phi[None, :]
+    H = h*np.cos(delta) + np.diag(I)
+    return fold(H @ ddphi + (h*np.sin(delta)) @ dphi**2 + 9.81*static*np.cos(phi))
+"""
+FORWARD = """
+import numpy as np
+L, M = [0.5, 0.4, 0.25], [3.0, 2.0, 1.0]
+
+def torques(q, qd, qdd, g):
+    th, w, al = np.cumsum(q), np.cumsum(qd), np.cumsum(qdd)
+    acc, forces, arms = np.array([0.0, g]), [], []
+    for t, wi, ai, l in zip(th, w, al, L):
+        u, n = np.array([np.cos(t), np.sin(t)]), np.array([-np.sin(t), np.cos(t)])
+        forces.append(acc + l/2*(ai*n - wi**2*u))
+        acc = acc + l*(ai*n - wi**2*u)
+        arms.append(l*u)
+    tau, f, n = np.zeros(3), np.zeros(2), 0.0
+    for i in (2, 1, 0):
+        r, F = arms[i], M[i]*forces[i]
+        n = n + M[i]*L[i]**2/12*al[i] + (r[0]*F[1] - r[1]*F[0])/2 + r[0]*f[1] - r[1]*f[0]
+        f = f + F
+        tau[i] = n
+    return tau
+
+def f(q, qd, tau):
+    zero = np.zeros(3)
+    bias = torques(q, qd, zero, 9.81)
+    D = np.column_stack([torques(q, zero, e, 0.0) for e in np.eye(3)])
+    return np.linalg.solve(D, tau - bias)
+"""
+COLUMNS = """
+import numpy as np
+pi = np.pi
+
+def dh(th, d, a, al):
+    ct, st, ca, sa = np.cos(th), np.sin(th), np.cos(al), np.sin(al)
+    return np.array([[ct, -st*ca, st*sa, a*ct], [st, ct*ca, -ct*sa, a*st], [0, sa, ca, d], [0, 0, 0, 1]])
+
+def f(q):
+    T = [np.eye(4)]
+    for row in [(q[0], 0.412, 0, -pi/2), (q[1], 0.154, 0, pi/2), (-pi/2, q[2], 0.0203, 0),
+                (q[3], 0, 0, -pi/2), (q[4], 0, 0, pi/2), (q[5], 0.263, 0, 0)]:
+        T.append(T[-1] @ dh(*row))
+    z, o, J = [t[:3, 2] for t in T], [t[:3, 3] for t in T], np.zeros((6, 6))
+    for i in (0, 1, 3, 4, 5):
+        J[:, i] = np.hstack([np.cross(z[i], o[6] - o[i]), z[i]])
+    J[:, 2] = np.hstack([z[2], np.zeros(3)])
+    return J
+"""
+BODIES = """
+import numpy as np
+a, alpha, d = [0, 0.4318, 0.0203, 0, 0, 0], np.deg2rad([90, 0, -90, 90, -90, 0]), [0, 0, 0.15005, 0.4318, 0, 0]
+m = [0, 17.4, 4.8, 0.82, 0.34, 0.09]
+rc = np.array([[0, 0, 0], [-0.3638, 0.006, 0.2275], [-0.0203, -0.0141, 0.07], [0, 0.019, 0], [0, 0, 0], [0, 0, 0.032]])
+I = [(0, 0, 0, 0, 0, 0), (0.13, 0.524, 0.539, 0, 0, 0), (0.0685, 0.0835, 0.015, 0, 0, 0),
+     (0.0018, 0.0013, 0.0018, 0, 0, 0), (0.0003, 0.0004, 0.0003, 0, 0, 0), (0.00015, 0.00015, 4e-05, 0, 0, 0)]
+
+def tensor(i):
+    return np.array([[i[0], i[3], i[4]], [i[3], i[1], i[5]], [i[4], i[5], i[2]]])
+
+def f(q, qd):
+    R, p, w, v, T = np.eye(3), np.zeros(3), np.zeros(3), np.zeros(3), []
+    for i in range(6):
+        w = w + R[:, 2]*qd[i]
+        ct, st, ca, sa = np.cos(q[i]), np.sin(q[i]), np.cos(alpha[i]), np.sin(alpha[i])
+        p_new = p + R @ np.array([a[i]*ct, a[i]*st, d[i]])
+        R_new = R @ np.array([[ct, -st*ca, st*sa], [st, ct*ca, -ct*sa], [0, sa, ca]])
+        v = v + np.cross(w, p_new - p)
+        vc, own = v + np.cross(w, R_new @ rc[i]), R_new.T @ w
+        T.append(0.5*m[i]*vc @ vc + 0.5*own @ tensor(I[i]) @ own)
+        R, p = R_new, p_new
+    return np.array(T)
+"""
 PROGRAMS = {
+    "absolute": ("planar3r", "inverse_dynamics", ABSOLUTE),
+    "forward": ("planar3r", "forward_dynamics", FORWARD),
+    "columns": ("stanford", "jacobian", COLUMNS),
+    "bodies": ("puma560", "link_kinetic_energies", BODIES),
     "symbols": ("planar3r", "coriolis_matrix", CHRISTOFFEL),
     "cranks": ("isotropic", "fivebar_jacobian", CRANKS),
     "centres": ("puma560", "potential_energy", CENTRES),
@@ -110,6 +198,17 @@ def test_the_programs_are_right(name: str) -> None:
         pytest.param("cranks", [("w/(l1*(u @ H @ w))", "w/(u @ H @ w)"), ("(1, -1)):\n        u", "(-1, 1)):\n        u")],
                      "`for i, s in enumerate((-1, 1))` should be", id="the legs, and a length that is used elsewhere"),
         pytest.param("centres", [("(p + c)[2]", "p[2]")], "`V += m[i]*9.81*(p[2] + c[2])`", id="the origin for the centre"),
+        pytest.param("absolute", [(" + np.diag(I)", " + I")], "np.diag(I)`", id="a row for a diagonal"),
+        pytest.param("absolute", [("np.cumsum(t[::-1])[::-1]", "np.cumsum(t)")], "np.cumsum(t[::-1])[::-1]`",
+                     id="a sum that runs the other way"),
+        pytest.param("forward", [("torques(q, zero, e", "torques(q, qd, e")], "should be `np.column_stack([torques(q, np.zeros(3), e, 0.0)",
+                     id="rates in the columns of the mass matrix"),
+        pytest.param("columns", [("np.hstack([z[2], np.zeros(3)])", "np.hstack([np.cross(z[2], o[6] - o[2]), z[2]])")],
+                     "np.hstack([z[2], np.zeros(3)])", id="a slide's column"),
+        pytest.param("bodies", [("[[i[0], i[3], i[4]], [i[3], i[1], i[5]], [i[4], i[5], i[2]]]",
+                                 "[[i[0], i[1], i[2]], [i[1], i[3], i[4]], [i[2], i[4], i[5]]]")],
+                     "[[i[0], i[3], i[4]], [i[3], i[1], i[5]], [i[4], i[5], i[2]]]", id="the order of a tensor's numbers"),
+        pytest.param("bodies", [("p_new - p)", "p_new)")], "np.cross(w, p_new - p)", id="no line that does nothing"),
         pytest.param("rows", [("[1, 1, 1]", "[0, 0, 1]")], "`[0, 0, 1]` should be `[1, 1, 1]`", id="all joints turn the tool"),
     ],
 )  # fmt: skip

@@ -38,10 +38,12 @@ from kinlab.doctor.program.edits.single.rows import of_letters, of_sequence
 from kinlab.doctor.program.edits.single.whole import plus, shifted, value_of, whole_constant
 from kinlab.doctor.program.edits.subscripts import of_subscripts
 from kinlab.doctor.program.observed import Observed, Seen
-from kinlab.doctor.program.places import Here, ProgramEdit, called, number, places
+from kinlab.doctor.program.places import Here, ProgramEdit, called, number, paired, places
 from kinlab.doctor.program.trial import Trial
 from kinlab.tolerances import TOLERANCES
 
+_UNCHANGED = 0.3
+"""What it costs more to give a name its own value: the line would do nothing."""
 _ALONG = ("transpose", "moveaxis")
 """What is given numbers of axes."""
 _WRITTEN = 1.15
@@ -68,6 +70,9 @@ def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[Pro
                     every += (*of_guards(here, scope, observed, *by),)
                     if _sums_names(here, scope):
                         every = (*(_dearer(x, _SUMMED) for x in every),)
+                    own = _set_here(here) if isinstance(node, ast.Name) else []
+                    if own:
+                        every = (*(_unchanged(x, own) for x in every),)
                     if _says_where(here):
                         every = (*(replace(x, cost=max(x.cost, _WRITTEN)) for x in every),)
                     beside = _rotations_beside(here, observed)
@@ -81,6 +86,21 @@ def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[Pro
     found += of_data(trial)
     # of equal ones the later line: what is set there is used more rarely
     return sorted(found, key=lambda edit: (edit.cost, edit.part, -_line(edit)))
+
+
+def _set_here(here: Here) -> list[str]:
+    """The name to which the statement gives a name as it is: ``o = o`` would do nothing."""
+    line = statement_of(here.above)
+    if not isinstance(line, ast.Assign):
+        return []
+    pairs = (pair for target in line.targets for pair in paired(target, line.value))
+    return [one.id for one, what in pairs if what is here.node and isinstance(one, ast.Name)]
+
+
+def _unchanged(edit: ProgramEdit, own: list[str]) -> ProgramEdit:
+    """An edit, dearer where it gives a name its own value."""
+    same = getattr(edit.changes[0].new, "id", None) in own
+    return replace(edit, cost=edit.cost + _UNCHANGED) if same else edit
 
 
 def _dearer(edit: ProgramEdit, more: float) -> ProgramEdit:

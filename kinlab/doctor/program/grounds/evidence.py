@@ -37,6 +37,8 @@ _UNLIKE = 0.15
 """What it costs more to add numbers whose names are those of a mass and of a length."""
 _SPOILED = 0.15
 """What an edit costs more that spoils what is right."""
+_SHARED = 0.05
+"""What it costs more to add to a right value that is used in several places."""
 _USED = 0.07
 """What it costs more to put right where a value is used than where it is worked out."""
 _MEANT = 0.1
@@ -94,6 +96,7 @@ class Grounds:
         self.sound: set[int] = set()
         self.trusted: set[int] = set()
         self.doubted: set[int] = set()
+        self.shared: set[int] = set()
         self.helpers: set[int] = set()
         self.mirrored: set[int] = set()
         self.crossing: set[int] = set()
@@ -101,8 +104,8 @@ class Grounds:
         self.worked_out = {
             (part, name) for part, tree in enumerate(trial.trees) for name in _worked_out(tree)
         }
-        used = Counter(name for tree in trial.trees for name in names(tree, ast.Load))
-        self.once = {name for name, count in used.items() if count == 1}
+        self.used = Counter(name for tree in trial.trees for name in names(tree, ast.Load))
+        self.once = {name for name, count in self.used.items() if count == 1}
         self.renamed = {name for tree in trial.trees for name in _renamed(tree)} & self.once
         self.chains = {
             id(node.value): step
@@ -147,6 +150,8 @@ class Grounds:
             return _SPOILED
         if edit.kind == "sign" and self._is_typed(edit.node):
             return _SPOILED
+        if edit.kind == "missing term" and id(edit.node) in self.shared:
+            return _SHARED
         if self.coincident(edit):
             return _COINCIDENT
         mirrored = edit.kind == "sign" and edit.part in self.mirrored
@@ -274,6 +279,9 @@ class Grounds:
                 self.partly.add(id(node.value))
             if _are_flags(observed.of(node.value)):
                 self.flags |= {id(inner) for inner in nodes(node.value)}
+            target = node.targets[0] if isinstance(node, ast.Assign) else None
+            if good and isinstance(target, ast.Name) and self.used[target.id] > 1:
+                self.shared.add(id(node.value))
             if good and not isinstance(node.value, ast.Name) and not _of_either_sign(senses):
                 self.right |= {id(inner) for inner in nodes(node)}
             near = self._is_whole(node.value, observed)

@@ -120,8 +120,6 @@ class _Several:
                 break
         if not found and together.usable and not search.stand:
             found = tried.likeliest(known, known.adding_up(3) + together.threes())
-            ahead = [next(known.edits(pair, 1)) for pair in together.ahead()[:_WAYS]]
-            found = found or self._last(search, ahead)
             found = found or tried.likeliest(known, together.any_three())
         if found:
             return self._settled(search, found)

@@ -53,8 +53,6 @@ _LIKELY, _PRODUCT = 300, 600_000
 """Edits of which any three are run together, the product of whose ranks is no larger."""
 _SOONEST = 60
 """Edits of which any three are run, whatever speaks against them."""
-_GAINS = 4
-"""Pairs beside which a third is looked for."""
 _GAINING = 30
 """Edits that make numbers right, with which any other is run."""
 _BITS = 63
@@ -109,7 +107,6 @@ class TriedTogether:
         self.weights = np.random.default_rng(5).uniform(0.5, 1.5, size)
         self.three = min(_THREE, math.isqrt(_KEPT // max(size, 1)))
         self.both = np.full((self.three, self.three, size), np.nan)
-        self.gains: list[tuple[int, float, Chosen]] = []
         self.chosen: list[Any] = []
         self.marks: list[Array] = []
 
@@ -182,7 +179,6 @@ class TriedTogether:
                 continue
             found += [(int(i), int(j)) for i, j in right]
             self._keep(chosen, rows)
-            self._keep_gains(chosen, rows)
         if found:
             yield sorted(found, key=self.known.cost)
 
@@ -299,25 +295,6 @@ class TriedTogether:
         few = np.flatnonzero((chosen < self.three).all(axis=1))
         one, other = chosen[few].T
         self.both[one, other] = self.both[other, one] = rows[few]
-
-    def _keep_gains(self, chosen: Any, rows: Array) -> None:
-        """The pairs that make most of what is wrong right, and spoil nothing."""
-        size = rows.shape[1]
-        right = np.abs(rows - self.known.goal[:size]) <= self.known.near
-        wrong = self.known.wrong[:size]
-        gains = np.where((right | wrong).all(axis=1), (right & wrong).sum(axis=1), 0)
-        best = np.argsort(-gains, kind="stable")[:_GAINS]
-        some = [(int(gains[k]), self.known.cost(tuple(chosen[k])), tuple(map(int, chosen[k])))
-                for k in best if gains[k]]  # fmt: skip
-        ranked = sorted({*self.gains, *some}, key=lambda one: (-one[0], *one[1:]))
-        self.gains = ranked[:_GAINS]
-
-    def ahead(self) -> list[Chosen]:
-        """Pairs that make more numbers right than either of their edits does alone."""
-        single = [*self.known.gaining]
-        alone = (self.known.right & self.known.wrong).sum(axis=1)
-        most = int(max((alone[k] for k in single), default=0))
-        return [pair for count, _cost, pair in self.gains if count > most]
 
     def threes(self) -> list[Chosen]:
         """Any three edits that make the program right as far as their pairs tell, likeliest first.

@@ -9,7 +9,7 @@ from kinlab.doctor.bytecode.syntax import factors
 from kinlab.doctor.program.edits.scope import PI, Scope, Turned, statement_of
 from kinlab.doctor.program.edits.single.constants import OF_RODS
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import Here, ProgramEdit, paired
+from kinlab.doctor.program.places import Here, ProgramEdit
 
 _FEW = 8
 """Attributes among which a wrong one is looked for early."""
@@ -17,8 +17,6 @@ _OF_ITS_MASS = 0.015
 """What it costs less where the mass of its link stands beside it."""
 _OF_ROD = 0.04
 """What that costs more in a rod's moment of inertia, whose number is as soon mistaken."""
-_UNCHANGED = 0.15
-"""What it costs more to give a name its own value: the line would do nothing."""
 _HALF = 1.03
 """Cost of a length for the distance of the centre, where that is half of it, or that for it."""
 _IN_LINE = 1.12
@@ -51,8 +49,6 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
                 cost -= _OF_ITS_MASS * _is_of_the_mass(here, other)
             elif _carries_another(here, other):
                 cost = _HALF
-            if other in _set_here(here):
-                cost += _UNCHANGED
             if other == across and {other, node.id} <= scope.sines:
                 kind, cost = "sin/cos", 1.04
             yield here.instead(ast.Name(other, ast.Load()), kind, cost)
@@ -65,15 +61,6 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
             if other != node.id and entries == shape[1:] and scope.shapes.get(other) != shape:
                 cost = 1.15 if _alike(other, node.id) else 1.2
                 yield here.instead(ast.Name(other, ast.Load()), "name", cost)
-
-
-def _set_here(here: Here) -> list[str]:
-    """The name to which the statement gives a name as it is: ``o = o`` would do nothing."""
-    line = statement_of(here.above)
-    if not isinstance(line, ast.Assign):
-        return []
-    pairs = (pair for target in line.targets for pair in paired(target, line.value))
-    return [one.id for one, what in pairs if what is here.node and isinstance(one, ast.Name)]
 
 
 def _carries_another(here: Here, length: str) -> bool:
