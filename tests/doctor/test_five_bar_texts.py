@@ -264,3 +264,20 @@ def test_a_five_bar_of_ones_own_is_known_by_its_file(tmp_path) -> None:
 def test_a_formula_of_the_other_crank_is_told_as_such() -> None:
     found = kl.diagnose("isotropic", "Thetad2", "sqrt(J11**2 + J12**2)*v_max", samples=40)
     assert "the formula is the other crank's" in found.sentence
+
+
+def test_a_slip_within_what_a_lost_factor_is_put_in_front_of() -> None:
+    """Both stand in the line: they come before any reading of the angle."""
+    right = "(x - e - l1*cos(q1))/(l1*(y*cos(q1) - (x - e)*sin(q1)))"
+    slips = right.replace("(l1*(y", "((y").replace("- (x - e)*sin", "+ (x - e)*sin")
+    assert kl.diagnose("isotropic", "J11", right).agrees
+    found = kl.diagnose("isotropic", "J11", slips)
+    assert {*found.causes[0].kinds} == {"sign", "missing factor"}, str(found)
+    (corrected,) = found.causes[0].corrected.values()
+    assert kl.diagnose("isotropic", "J11", corrected).agrees
+
+
+def test_a_coefficient_alone_that_is_multiplied_is_right_if_all_are() -> None:
+    found = kl.diagnose("isotropic", "B1", "-l1*y")
+    assert found.agrees and found.form == "unusual"
+    assert "A, B and C all are" in found.remarks[0]

@@ -172,7 +172,45 @@ def f(q, qd):
         R, p = R_new, p_new
     return np.array(T)
 """
+MIXED = """
+import numpy as np
+from math import sin, cos
+
+def f(q):
+    m1, m2, l1, l2 = 2.0, 1.5, 0.5, 0.4
+    lc1, lc2 = l1/2, l2/2
+    I1, I2 = m1*l1**2/12, m2*l2**2/12
+    d11 = m1*lc1**2 + m2*(l1**2 + lc2**2 + 2*l1*lc2*cos(q[1])) + I1 + I2
+    d12 = m2*(lc2**2 + l1*lc2*cos(q[1])) + I2
+    return np.array([[d11, d12], [d12, m2*lc2**2 + I2]])
+"""
+INWARD = """
+import numpy as np
+from math import sin, cos
+l1, l2, m1, m2, g = 0.5, 0.4, 2.0, 1.5, 9.81
+
+def f(q, qd, qdd):
+    s1, c1, s2, c2 = sin(q[0]), cos(q[0]), sin(q[1]), cos(q[1])
+    w, al = qd[0] + qd[1], qdd[0] + qdd[1]
+    a1x, a1y = g*s1 - l1*qd[0]**2, g*c1 + l1*qdd[0]
+    a2x, a2y = c2*a1x + s2*a1y - l2*w**2, c2*a1y - s2*a1x + l2*al
+    f1y, f2x, f2y = m1*a1y, m2*a2x, m2*a2y
+    n2 = l2*f2y
+    return np.array([n2 + l1*f1y + l1*c2*f2y + l1*s2*f2x, n2])
+"""
+WRENCH = """
+import numpy as np
+
+def f(q, wrench):
+    fx, fy, fz, nx, ny, nz = wrench
+    phi = np.cumsum(q)
+    x, y = [0.5, 0.4, 0.25]*np.cos(phi), [0.5, 0.4, 0.25]*np.sin(phi)
+    return np.array([nz + sum(x[k:])*fy - sum(y[k:])*fx for k in range(3)])
+"""
 PROGRAMS = {
+    "mixed": ("planar2r_rods", "mass_matrix", MIXED),
+    "inward": ("planar2r", "inverse_dynamics", INWARD),
+    "wrench": ("planar3r", "statics", WRENCH),
     "absolute": ("planar3r", "inverse_dynamics", ABSOLUTE),
     "forward": ("planar3r", "forward_dynamics", FORWARD),
     "columns": ("stanford", "jacobian", COLUMNS),
@@ -198,6 +236,11 @@ def test_the_programs_are_right(name: str) -> None:
         pytest.param("cranks", [("w/(l1*(u @ H @ w))", "w/(u @ H @ w)"), ("(1, -1)):\n        u", "(-1, 1)):\n        u")],
                      "`for i, s in enumerate((-1, 1))` should be", id="the legs, and a length that is used elsewhere"),
         pytest.param("centres", [("(p + c)[2]", "p[2]")], "`V += m[i]*9.81*(p[2] + c[2])`", id="the origin for the centre"),
+        pytest.param("mixed", [("2*l1*lc2", "l1*lc2")], "2*l1*lc2*cos(q[1])) + I1", id="the mixed term of a square"),
+        pytest.param("mixed", [("m1*l1**2/12", "m1*l1**2/3")], "m1*l1**2/12", id="a rod about its middle"),
+        pytest.param("inward", [(" + l1*s2*f2x", "")], "l1*c2*f2y + l1*s2*f2x", id="the part along the other axis"),
+        pytest.param("wrench", [("fx, fy, fz, nx, ny, nz =", "nx, ny, nz, fx, fy, fz =")], "`fx, fy, fz, nx, ny, nz = wrench`",
+                     id="the halves of a wrench"),
         pytest.param("absolute", [(" + np.diag(I)", " + I")], "np.diag(I)`", id="a row for a diagonal"),
         pytest.param("absolute", [("np.cumsum(t[::-1])[::-1]", "np.cumsum(t)")], "np.cumsum(t[::-1])[::-1]`",
                      id="a sum that runs the other way"),

@@ -6,7 +6,9 @@ import ast
 from collections.abc import Iterator
 from math import pi
 
-from kinlab.doctor.bytecode.syntax import copied, names, nodes
+import numpy as np
+
+from kinlab.doctor.bytecode.syntax import copied, factors, names, nodes
 from kinlab.doctor.program.edits.scope import Scope, Turned, statement_of, stem_of, summands
 from kinlab.doctor.program.observed import Shape
 from kinlab.doctor.program.places import (
@@ -39,6 +41,8 @@ _NEXT_ANGLE = 1.08
 """Cost of the angle of the joint before, or next, in a sum: c12 for c2."""
 _OF_AN_ANGLE = 0.1
 """What a factor costs more that is an angle: of these sines and cosines are factors."""
+_MIXED = 0.96
+"""Cost of a lost 2 in the mixed term of a square: a length for a distance is as soon mistaken."""
 _DIVIDED = 1.07
 """Cost of a divisor that is lost."""
 _SAME_NUMBER = 0.06
@@ -81,7 +85,9 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     first = summand and here.field == "left"
     negative = isinstance(_leftmost(node), ast.UnaryOp) or isinstance(parent, ast.UnaryOp)
     pose = shape == (4, 4) and scope.is_pose(node)
-    if not negative and not pose and (first or not operated):
+    beside = parent.right if summand and first and isinstance(parent, ast.BinOp) else None
+    nothing = beside is not None and _is_zero(scope, beside)  # the sign is then that of the sum
+    if not negative and not pose and not nothing and (first or not operated):
         outer = here.above[-2] if isinstance(parent, ast.Tuple) else parent
         given = isinstance(outer, ast.Assign | ast.Return)
         alone = isinstance(node, ast.Name | ast.Subscript | ast.Attribute) and given
@@ -95,6 +101,7 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
             times = ast.BinOp(number(value), ast.Mult(), node)
             rare = trig or value == _THRICE or _keeps(parent, node)
             cost = 1.15 if rare else 1.05 + _ODD * (passed or counted)
+            cost = _MIXED if value == 2 and _is_mixed(here) else cost
             yield here.instead(times, "factor", cost)
     if (summand or whole) and not isinstance(node, ast.Constant):
         yield from _divided(here, scope, summand)
@@ -158,6 +165,28 @@ def _divided(here: Here, scope: Scope, summand: bool) -> Iterator[ProgramEdit]:
         if text in scope.divisors and text not in own:
             new = ast.BinOp(node, ast.Div(), divisor)
             yield here.instead(new, "missing factor", _DIVIDED)
+
+
+def _is_mixed(here: Here) -> bool:
+    """Whether it is the mixed term of a square of a sum: ``a*b*c`` beside ``a**2 + b**2``."""
+    above = [x for x in here.above if isinstance(x, ast.BinOp)]
+    sums = [x for x in above if isinstance(x.op, ast.Add | ast.Sub)]
+    if not sums or not isinstance(here.parent, ast.BinOp) or here.parent not in sums:
+        return False
+    squared = {
+        ast.unparse(x.left)
+        for one in summands(sums[0])
+        for x in nodes(one)
+        if isinstance(x, ast.BinOp) and isinstance(x.op, ast.Pow)
+    }
+    own = {ast.unparse(x) for x in factors(here.node)}
+    return len(own & squared) > 1
+
+
+def _is_zero(scope: Scope, node: ast.expr) -> bool:
+    """Whether a piece was nothing whenever it was passed."""
+    seen = scope.observed.of(node)
+    return seen is not None and bool(seen.values) and not any(map(np.any, seen.values))
 
 
 def _instead_of_zero(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

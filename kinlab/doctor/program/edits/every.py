@@ -42,6 +42,8 @@ from kinlab.doctor.program.places import Here, ProgramEdit, called, number, pair
 from kinlab.doctor.program.trial import Trial
 from kinlab.tolerances import TOLERANCES
 
+_TWIST = 6
+"""Numbers of a twist, or of a wrench."""
 _UNCHANGED = 0.3
 """What it costs more to give a name its own value: the line would do nothing."""
 _ALONG = ("transpose", "moveaxis")
@@ -244,6 +246,9 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Program
             cost = 1.08 if _overwrites(here, target) else 1.15
             yield here.instead(ast.AugAssign(target, ast.Add(), node.value), "sum", cost)
         if isinstance(target, ast.Tuple):
+            if len(target.elts) == _TWIST:
+                halves = [*target.elts[_TWIST // 2 :], *target.elts[: _TWIST // 2]]
+                yield here.within(target, "elts", halves, "order", 1.04)
             for k in range(len(target.elts) - 1):
                 swapped = [*target.elts]
                 swapped[k], swapped[k + 1] = swapped[k + 1], swapped[k]

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from functools import reduce
 from itertools import combinations
 
-from kinlab.doctor.bytecode.syntax import copied, names, nodes
+from kinlab.doctor.bytecode.syntax import copied, factors, names, nodes
 from kinlab.doctor.program.edits.additions import OtherAxis, summed
 from kinlab.doctor.program.edits.scope import Scope, Turned
 from kinlab.doctor.program.edits.single.entries import keys_of
@@ -45,6 +46,8 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
             yield from _crosswise(here)
         if isinstance(parent, _SET) or isinstance(op, ast.Mult):
             yield from _of_idle_numbers(here, scope)
+        if isinstance(op, _SUMS) and isinstance(node, ast.BinOp):
+            yield from _part_across(here, scope)
         if isinstance(op, ast.Mult) and isinstance(node, ast.Call) and called(node) == "cos":
             yield here.instead(ast.BinOp(number(1), ast.Sub(), node), "missing term", 1.1)
         if isinstance(op, ast.Mult) and not isinstance(node, ast.Name | ast.Call):
@@ -378,6 +381,32 @@ def _crosswise(here: Here) -> Iterator[ProgramEdit]:
         across = ast.BinOp(left, ast.Mult(), right)
         for op, cost in ((ast.Sub(), 1.1), (ast.Add(), 1.12)):
             yield here.instead(ast.BinOp(node, op, across), "missing term", cost)
+
+
+def _part_across(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """The part along the other axis: ``l1*c2*fy + l1*s2*fx``, of which the first is left."""
+    parts = factors(here.node)
+    if len(parts) < 2:
+        return
+    turned = Turned(scope.shapes)
+    for i, one in enumerate(parts):
+        other = turned.visit(copied(one))
+        if ast.dump(other) == ast.dump(one):
+            continue
+        for j, last in enumerate(parts):
+            if j != i and isinstance(last, ast.Name) and last.id[-1:] in _ACROSS:
+                name = last.id[:-1] + _ACROSS[last.id[-1]]
+                if scope.shapes.get(name) == ():
+                    new = [*parts]
+                    new[i], new[j] = other, ast.Name(name, ast.Load())
+                    term = reduce(lambda a, b: ast.BinOp(a, ast.Mult(), b), new)
+                    for op, cost in ((ast.Add(), 1.06), (ast.Sub(), 1.07)):
+                        whole = ast.BinOp(here.node, op, term)
+                        yield here.instead(whole, "missing term", cost)
+
+
+_ACROSS = {"x": "y", "y": "x"}
+"""Letters of axes of a plane."""
 
 
 def _other_axes(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:

@@ -41,6 +41,8 @@ _SHARED = 0.05
 """What it costs more to add to a right value that is used in several places."""
 _USED = 0.07
 """What it costs more to put right where a value is used than where it is worked out."""
+_RENAMED = 0.09
+"""The same of a name that is another name for something."""
 _MEANT = 0.1
 """What it costs less to make a textbook's function of one with the other sign, or a chain of
 transforms of one whose names do not follow on one another."""
@@ -150,7 +152,7 @@ class Grounds:
             return _SPOILED
         if edit.kind == "sign" and self._is_typed(edit.node):
             return _SPOILED
-        if edit.kind == "missing term" and id(edit.node) in self.shared:
+        if edit.kind in ("missing term", "transposed") and id(edit.node) in self.shared:
             return _SHARED
         if self.coincident(edit):
             return _COINCIDENT
@@ -159,7 +161,7 @@ class Grounds:
             return -_MEANT
         more = _UNLIKE if self._adds_unlike(edit.changes[0].new) else 0.0
         more += _AGREED if id(edit.node) in self.agreed else 0.0
-        more += _USED * self._where_it_is_used(edit)
+        more += _USED * self._where_it_is_used(edit) + _RENAMED * self._turns_a_renamed(edit)
         return more + (_TRUSTED if edit.part in self.trusted else 0.0)
 
     def _makes_a_chain(self, edit: ProgramEdit) -> bool:
@@ -186,6 +188,15 @@ class Grounds:
         constant = all(np.array_equal(first, value) for value in seen.values)
         return constant and int(np.count_nonzero(first)) > 1
 
+    def _turns_a_renamed(self, edit: ProgramEdit) -> bool:
+        """Whether an edit turns round a term with another name for something: ``c112 = h``."""
+        if edit.kind != "sign" or not isinstance(edit.node, ast.BinOp):
+            return False
+        if isinstance(edit.node.op, ast.MatMult):
+            return False
+        every = (x for term in summands(edit.node) for x in factors(term))
+        return any(isinstance(x, ast.Name) and x.id in self.renamed for x in every)
+
     def _where_it_is_used(self, edit: ProgramEdit) -> bool:
         """Whether an edit turns round, or multiplies, a value that was worked out before.
 
@@ -197,8 +208,7 @@ class Grounds:
         if edit.kind == "sign" and isinstance(node, ast.BinOp):
             if isinstance(node.op, ast.MatMult):  # ``R @ v`` of a vector that is used once
                 return self._is_once(edit.part, node.right)
-            every = (x for term in summands(node) for x in factors(term))
-            return any(isinstance(x, ast.Name) and x.id in self.renamed for x in every)
+            return False
         if edit.kind == "sign" and isinstance(node, ast.Call) and called(node) == "solve":
             return self._is_once(edit.part, node.args[-1])
         targets = holder.targets if isinstance(holder, ast.Assign) else []
@@ -280,7 +290,8 @@ class Grounds:
             if _are_flags(observed.of(node.value)):
                 self.flags |= {id(inner) for inner in nodes(node.value)}
             target = node.targets[0] if isinstance(node, ast.Assign) else None
-            if good and isinstance(target, ast.Name) and self.used[target.id] > 1:
+            computed = good and not isinstance(node.value, ast.Name)
+            if computed and isinstance(target, ast.Name) and self.used[target.id] > 1:
                 self.shared.add(id(node.value))
             if good and not isinstance(node.value, ast.Name) and not _of_either_sign(senses):
                 self.right |= {id(inner) for inner in nodes(node)}

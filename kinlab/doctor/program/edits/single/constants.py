@@ -54,7 +54,7 @@ def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
         and value in OF_RODS
         and isinstance(getattr(here.parent, "op", None), ast.Div)
     ):
-        yield here.within(here.node, "value", OF_RODS[value], "number", 1.05)
+        yield here.within(here.node, "value", OF_RODS[value], "number", 1.03)
     if given is not None and called(given) == "append" and value in (0, 1):
         yield here.within(here.node, "value", type(value)(1 - value), "number", 1.05)
     if value == 1 and (angle := _angle_beside(here)) is not None:
