@@ -34,6 +34,8 @@ from kinlab.host.language import N_
 _FACTORS = {"2": 2.0, "3": 3.0, "4": 4.0, "/2": 0.5, "/3": 1 / 3, "/4": 0.25, "pi": math.pi}
 _LENGTHS = ({"l", "lc"}, {"L", "lc"}, {"a", "lc"}, {"L", "Lc"}, {"l", "r"})
 """A link's length, and how far its centre of mass is: the one is taken for the other."""
+_CENTRES = {"lc", "Lc", "r"}
+"""Letters of the distances of centres."""
 _OF_LINKS = set().union(*_LENGTHS)
 _MOTION = re.compile(r"(qdd|qd|q)(\d+)")
 _ANGLE, _NEAR_ANGLE = math.pi / 12, 0.1
@@ -111,6 +113,7 @@ def _name(line: Line, place: Place, name: str) -> None:
             cost = 1.2 if near else 1.4 if word[0].lower() == name[0].lower() else 1.8
             if word[-1] == name[-1] and {_letters(word), _letters(name)} in _LENGTHS:
                 cost = 1.3 if _beside_a_length(line, place) else 1.1
+                cost = 1.4 if _halves_lengths(line) and word not in words_in(line.source) else cost
             line.instead(place, word, value, "index" if near else "parameter", cost)
             more, less = f"({name} + {word})", f"({name} - {word})"
             line.instead(place, more, place.value + value, "missing term", 1.5)
@@ -119,6 +122,12 @@ def _name(line: Line, place: Place, name: str) -> None:
 
 def _letters(name: str) -> str:
     return re.sub(r"[\d_]+", "", name)
+
+
+def _halves_lengths(line: Line) -> bool:
+    """Whether a text has ``l/2`` for the centres of rods: they have no names of their own then."""
+    names = {_letters(word) for word in words_in(line.source)}
+    return not names & _CENTRES and bool(re.search(r"/ *[24]\b|0\.(?:5|25)\b", line.source))
 
 
 def _beside_a_length(line: Line, place: Place) -> bool:
