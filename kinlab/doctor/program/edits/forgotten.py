@@ -179,8 +179,11 @@ def _of_idle_numbers(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """A number that nothing uses any more, times something: ``r*F + I*alpha``."""
     if isinstance(here.node, ast.Name | ast.Subscript | ast.Attribute):
         return
-    every = [x for _text, x in scope.simple(()) if isinstance(x, ast.Name | ast.Subscript)]
+    every = [x for _text, x in scope.simple(())]
     idle = [x for x in every if scope.is_idle(x)]
+    if isinstance(here.node, ast.IfExp):  # ``theta + (q if turns else 0)``
+        for one in idle[:_FEW]:
+            yield here.instead(ast.BinOp(one, ast.Add(), here.node), "missing term", 1.08)
     for one in idle[:_FEW]:
         for other in [x for x in every if x not in idle][: 2 * _FEW]:
             term = ast.BinOp(one, ast.Mult(), other)

@@ -114,7 +114,8 @@ class Effects:
 
     def edits(self, chosen: Chosen, most: int) -> Iterator[Way]:
         """The likeliest edits of these effects, and then the others of the same effects."""
-        yield from product(*(self.alike[k][:most] for k in chosen))
+        ways = product(*(self.alike[k][:most] for k in chosen))
+        yield from (way for way in ways if len({*map(id, way)}) == len(way))
 
     def cost(self, chosen: Chosen) -> float:
         """How far-fetched the likeliest edits of these effects are together."""
@@ -126,6 +127,8 @@ class Effects:
         allowance = TOLERANCES.effects_add_up
         if count == 2:
             found: list[Chosen] = [*pairs_adding_up(self.rows, self.goal, allowance)]
+            twice = np.abs(2 * self.rows - self.goal).max(axis=1) <= allowance
+            found += [(int(k),) * 2 for k in np.flatnonzero(twice) if len(self.alike[k]) > 1]
         else:
             found = self._threes(allowance)
         return sorted(found, key=self.cost)
