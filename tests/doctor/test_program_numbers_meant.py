@@ -166,6 +166,17 @@ def test_a_program_that_remembers_its_answers(tmp_path: Path) -> None:
     assert "sine and cosine are exchanged" in found.sentence
 
 
+@pytest.mark.parametrize(("typed", "right"), [("3.14", True), ("1.571*2", True), ("1.6*2", False)])
+def test_a_constant_is_a_rounding_within_one_per_cent(typed: str, right: bool) -> None:
+    text = f"""
+import numpy as np
+
+def f(q):
+    return np.array([2.5*9.81*0.3*np.sin(({typed})/2 - q[0])])
+"""
+    assert told("single_link", "gravity_torques", text).agrees == right
+
+
 def test_a_whole_turn_more_is_the_same_angle() -> None:
     found = told("unequal", "fivebar_angles", ANGLES.format(sign="+"))
     assert found.agrees and found.form == "unusual", str(found)

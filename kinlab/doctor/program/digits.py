@@ -151,6 +151,7 @@ def _of_the_robot(search: LineSearch) -> Excuse | None:
     case = search.case
     constant = (abs(x.flat[0]) for x in numbers_at(case).values() if x.size and np.ptp(x) == 0)
     own = np.unique([*np.abs(own_numbers(case.robot)), *constant, *_ENDLESS])
+    held = own[~np.isin(own, _ENDLESS)]
     columns = columns_as_meant(search.trial, search.observed, case.robot, _may_stand)
     meant: list[tuple[NumberPlace, Literal, float]] = []
     limits = _limits(search)
@@ -159,7 +160,9 @@ def _of_the_robot(search: LineSearch) -> Excuse | None:
             continue
         column = columns.get(key_of(place))
         exact = abs(column or float(own[np.argmin(np.abs(own - one.value))]))
-        few = column is None and one.digits == 1 and abs(exact - one.value) > CLOSE * exact
+        near = CLOSE if exact in held else TOLERANCES.typed_rounding  # 1.6 is no pi/2
+        few = column is None and (one.digits == 1 or exact not in held)
+        few = few and abs(exact - one.value) > near * exact
         if one.value and exact != one.value and not few and _is_rounded(one, exact):
             meant.append((place, one, exact))
     plain = [one for one in meant if not (4 * one[1].value).is_integer()]
