@@ -7,5 +7,6 @@ module            what it holds
 ``definitions``   Definitions as they are run in a trial, and classes whose methods can be changed
 ``loaded``        The lines of a module that run when it is loaded
 ``plain``         Whether a program is plain arithmetic, and may be run with edits in it
+``typed``         Where the numbers of a program's data were typed
 ================  =================================================================================
 """
