@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 
@@ -81,7 +81,8 @@ _GLUED_NUMBER = re.compile(r"(?<![\w.])\d+[A-Za-z]{2}")
 _WORD_BELOW = re.compile(r"_[A-Za-z]{2}")
 _NUMBERED_NAME = re.compile(r"(?<![A-Za-z])[A-Za-z]\d")
 _WORDS = """
-    lc qd qdd th thd dq ddq dth tau phi psi eta pi xd yd vx vy vz ax ay az ux uy wx wy wz px py pz
+    lc qd qdd th thd dq ddq dth tau phi psi eta pi xd yd xdd ydd dx dy ddx ddy xt yt zt xb yb zb uHw
+    vx vy vz ax ay az ux uy wx wy wz px py pz
     rx ry rz cx cy cz mx my mz nx ny nz fx fy fz Ix Iy Iz Ixx Iyy Izz Ixy Ixz Iyz Ia IA Im IL Jm Jv
     Jw mp me mA mB rA np sin cos tan mod abs exp log det rot dot
 """.split()  # noqa: SIM905  a list of seventy
@@ -157,7 +158,7 @@ def plain_formula(text: str, place: str = "expression", writing: Hand | None = N
     writing = hand([text]) if writing is None else writing
     typeset = is_latex(text)
     text = _PRIMED.sub(_rate, bare(text))
-    if not typeset and _side_by_side(text):
+    if not typeset and _side_by_side(text, writing):
         text = _CENTRE.sub(lambda m: f"l_{{c{m[1].translate(_BELOW)}}}", text)
         typeset, text = True, text.replace("**", "^")
     text = ascii_text(text, place, as_latex=typeset)
@@ -186,7 +187,7 @@ def leaves_of(text: str, place: str, writing: Hand, typeset: bool) -> list[latex
         typeset: whether there were dollars around it.
     """
     found: list[latex.Leaf] = []
-    typeset = typeset or _side_by_side(text)
+    typeset = typeset or _side_by_side(text, writing)
     if typeset and text.isascii():
         latex.expression(text.replace("**", " ^"), place, found)
         return found
@@ -199,20 +200,26 @@ def leaves_of(text: str, place: str, writing: Hand, typeset: bool) -> list[latex
     return found
 
 
-def _side_by_side(text: str) -> bool:
-    """Whether a text without a backslash has its factors side by side: m₁l₁² cos θ₂, m_1 gl_1."""
+def _side_by_side(text: str, writing: Hand) -> bool:
+    """Whether a text without a backslash has its factors side by side: m₁l₁² cos θ₂, m_1 gl_1.
+
+    A name that the writer explains is none of these, whatever its letters.
+    """
     text = _CENTRE.sub(r"l\1", text)
     indexed = "_" in text and not _NUMBERED_NAME.search(text)
     if text.isascii() and not _GLUED.search(text) and not (indexed and _GLUED_NUMBER.search(text)):
         return False
-    return bool(_ALONE.fullmatch(text)) or ("*" not in text and _runs_together(text))
+    if _ALONE.fullmatch(text):
+        return True
+    own = (re.split(r"[\d_]", name)[0] for name in writing.known)
+    return "*" not in text and _runs_together(text, {*_WORDS, *own})
 
 
-def _runs_together(text: str) -> bool:
+def _runs_together(text: str, names: Container[str]) -> bool:
     """Whether its words are letters side by side, and functions behind these: gl₁cosθ₁, 2ex."""
     words = re.findall(r"[A-Za-z]+", text)
     letters = [re.sub(r"(?:sin|cos|tan|sqrt)$", "", word) for word in words]
-    apart = (len(x) < 2 or (x not in _WORDS and len(x) < 4) for x in letters)
+    apart = (len(x) < 2 or (x not in names and len(x) < 4) for x in letters)
     return not _WORD_BELOW.search(text) and "[" not in text and all(apart)
 
 

@@ -15,6 +15,7 @@ from kinlab.formulas import tree
 from kinlab.formulas.grids import cells, opened
 from kinlab.formulas.text import canonical, formula_file, parse
 from kinlab.formulas.typed import entry_name, explained, plain_formula, sides
+from kinlab.symbolic.vocabulary import vocabulary
 
 PLAIN = ("q1", "q2", "qd1", "qd2", "qdd1", "qdd2", "l1", "l2", "lc1", "m1", "m2", "I2", "g")
 AT = dict(zip(PLAIN, np.random.default_rng(8).uniform(0.4, 1.9, (len(PLAIN), 7)), strict=True))
@@ -494,3 +495,25 @@ def test_what_is_typed_without_end_is_refused_soon(piece):
     with pytest.raises(ExpressionError):
         diagnosed("g2", "[" + piece * (15_000 // len(piece)))
     assert time.process_time() - began < 5.0
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "ab = m2*g*l2; g2 = ab·cos(θ₁+θ₂)",
+        "mg = m2*g\ng2 = mg·l₂·cos(θ₁+θ₂)",
+        "gl = g*l2; g2 = m_2 gl cos(θ_1+θ_2)",
+        "m₂gl₂cos(θ₁+θ₂)",
+    ],
+)
+def test_a_name_that_is_explained_is_no_product_of_its_letters(text):
+    assert kl.diagnose("planar2r", "g2", text).agrees
+
+
+def test_no_name_of_a_robot_is_a_product_of_its_letters():
+    """Whatever stands beside it without a sign: ``xt·c₃``."""
+    table = kl.load("spatial3r").table
+    assert table is not None and "xt" in vocabulary(table).values
+    for name in vocabulary(table).values:
+        text = f"l₁ + {name}"
+        assert name in plain_formula(text).replace(" ", ""), name
