@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from contextlib import suppress
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,6 +12,7 @@ from kinlab.arrays import Array
 from kinlab.check.quantities.fivebar import numbers as plain_numbers
 from kinlab.check.quantities.registry import quantities
 from kinlab.doctor.glossary.textbook import Glossary, Row, Sense
+from kinlab.doctor.linkages.five_bar import asked, turn_and_weight
 from kinlab.errors import KinlabError
 from kinlab.fivebar.linkage import FiveBar
 
@@ -41,11 +42,15 @@ def linkage_meanings(fivebar: FiveBar, arguments: Mapping[str, Array]) -> Glossa
     """
     found = _Named()
     answers: dict[str, Array] = {}
+    stacks = {name: np.asarray(value)[None] for name, value in arguments.items()}
     for name, letters in _LETTERS.items():
-        answer = _asked(name, fivebar, arguments)
-        if answer is not None:
-            answers[name] = answer
-            found.of([letters] if isinstance(letters, str) else [*letters], answer)
+        if any(one not in arguments for one in quantities()[name].arguments):
+            continue
+        with suppress(KinlabError, np.linalg.LinAlgError), np.errstate(all="ignore"):
+            answer = asked(name, fivebar, stacks)[0]
+            if np.isfinite(answer).all():
+                answers[name] = answer
+                found.of([letters] if isinstance(letters, str) else [*letters], answer)
     plain = plain_numbers(fivebar)
     for letter in ("xy", "v", "a"):
         if letter in arguments:
@@ -60,14 +65,12 @@ def linkage_meanings(fivebar: FiveBar, arguments: Mapping[str, Array]) -> Glossa
             found.put("symbol", np.cos(angles[i]), f"cos(theta_{i + 1})", 1)
     if "fivebar_rods" in answers:
         _of_legs(found, fivebar, arguments, answers)
-    if {"mode", "v", "a"} <= set(arguments):
-        still = {**arguments, "a": np.zeros(2)}
-        turn = _asked("fivebar_turn", fivebar, still)
-        bare = replace(fivebar, payload=0.0)
-        held = _asked("fivebar_torque_massless", bare, {**still, "v": np.zeros(2)})
-        for letters, answer in (("f", turn), ("tau_Ag", held)):
-            if answer is not None:
-                found.of([letters], answer)
+    if "fivebar_turn" in answers:
+        with suppress(KinlabError, np.linalg.LinAlgError), np.errstate(all="ignore"):
+            parts = zip(("f", "tau_Ag"), turn_and_weight(fivebar, stacks), strict=True)
+            for letters, answer in ((name, legs[:, 0]) for name, legs in parts):
+                if np.isfinite(answer).all():
+                    found.of([letters], answer)
     if "fivebar_jacobian" in answers:
         J = answers["fivebar_jacobian"]
         if abs(np.linalg.det(J)) > 0:
@@ -75,20 +78,6 @@ def linkage_meanings(fivebar: FiveBar, arguments: Mapping[str, Array]) -> Glossa
             found.put("symbol", np.linalg.inv(J).T, "J^-T")
         found.put("symbol", np.linalg.det(J), "det J")
     return found.glossary()
-
-
-def _asked(name: str, fivebar: FiveBar, arguments: Mapping[str, Array]) -> Array | None:
-    """What a quantity is at the state; None where something is missing for it."""
-    quantity = quantities()[name]
-    if any(one not in arguments for one in quantity.arguments):
-        return None
-    stacks = [np.asarray(arguments[one])[None] for one in quantity.arguments]
-    try:
-        with np.errstate(all="ignore"):
-            answer = np.asarray(quantity.engine(fivebar, *stacks), dtype=float)[0]
-    except (KinlabError, np.linalg.LinAlgError):
-        return None
-    return answer if np.isfinite(answer).all() else None
 
 
 def _of_legs(

@@ -147,11 +147,13 @@ def _turns(way: AsRight, hand: Array) -> float:
 def _said(way: AsRight, found: Diagnosis) -> Diagnosis:
     if way.factor == "1":
         return found
-    told = _("the equation is multiplied by {factor}").format(factor=way.factor)
-    if way.case.quantity.name.endswith("_equation"):
-        told = _("it is multiplied by {factor}: right if A, B and C all are").format(
-            factor=way.factor
-        )
+    of_one = way.case.quantity.name.endswith("_equation")  # A, B or C
+    told = (
+        _("it is multiplied by {factor}: right if A, B and C all are")
+        if of_one
+        else _("the equation is multiplied by {factor}")
+    )
+    told = told.format(factor=way.factor)
     if found.agrees:
         return replace(found, form=found.form or "unusual", remarks=(*found.remarks, told))
     return found

@@ -8,6 +8,7 @@ the engine's. An entry without a leg's number (A, C, theta, w_x) is that of eith
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
 from itertools import combinations_with_replacement
@@ -365,11 +366,11 @@ def _moving(fivebar: FiveBar, quantity: Quantity, arguments: dict[str, Array]) -
         return found
     angles = arguments.get("theta")
     if angles is None:
-        angles = _asked("fivebar_angles", fivebar, arguments)
+        angles = asked("fivebar_angles", fivebar, arguments)
     found |= {f"q{i + 1}": angles[:, i] for i in range(2)}
     for before in _BEFORE.get(quantity.name, ()):
         name, _unit = _VECTORS[before]
-        answer = _asked(before, fivebar, arguments)
+        answer = asked(before, fivebar, arguments)
         for index in np.ndindex(answer.shape[1:]):
             i, j = (*index, 0)[:2]
             shown = name.format(i=i + 1, j=j + 1, k="xy"[j])
@@ -378,18 +379,18 @@ def _moving(fivebar: FiveBar, quantity: Quantity, arguments: dict[str, Array]) -
         across = found[f"u{i}x"] * found[f"w{i}y"] - found[f"u{i}y"] * found[f"w{i}x"]
         found[f"uHw{i}"] = across
     if "f1" in state_names(quantity):
-        still = {**arguments, "a": np.zeros_like(arguments["a"])}
-        bare = replace(fivebar, payload=0.0)
-        rest = {**still, "v": still["a"]}
-        for i, (turn, held) in enumerate(
-            zip(
-                _asked("fivebar_turn", fivebar, still).T,
-                _asked("fivebar_torque_massless", bare, rest).T,
-                strict=True,
-            )
-        ):
+        for i, (turn, held) in enumerate(zip(*turn_and_weight(fivebar, arguments), strict=True)):
             found |= {f"f{i + 1}": turn, f"tauAg{i + 1}": held}
     return found
+
+
+def turn_and_weight(fivebar: FiveBar, arguments: Mapping[str, Array]) -> tuple[Array, Array]:
+    """The notes' f, what theta_ddot has of the rates alone, and tau_Ag, each (2 legs, N)."""
+    still = {**arguments, "a": np.zeros_like(arguments["a"])}
+    rest = {**still, "v": still["a"]}
+    turn = asked("fivebar_turn", fivebar, still)
+    held = asked("fivebar_torque_massless", replace(fivebar, payload=0.0), rest)
+    return turn.T, held.T
 
 
 def _equations(fivebar: FiveBar, xy: Array) -> dict[str, Array]:
@@ -397,7 +398,8 @@ def _equations(fivebar: FiveBar, xy: Array) -> dict[str, Array]:
     return {f"{letter}{i + 1}": found[:, i, k] for i in range(2) for letter, k in _EQUATION.items()}
 
 
-def _asked(name: str, fivebar: FiveBar, arguments: dict[str, Array]) -> Array:
+def asked(name: str, fivebar: FiveBar, arguments: Mapping[str, Array]) -> Array:
+    """A quantity of the five-bar at the states of its arguments."""
     quantity = quantities()[name]
     return np.asarray(quantity.engine(fivebar, *(arguments[a] for a in quantity.arguments)))
 

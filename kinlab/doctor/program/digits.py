@@ -149,7 +149,8 @@ def of_rounded_numbers(search: LineSearch) -> Excuse | None:
 def _of_the_robot(search: LineSearch) -> Excuse | None:
     """Why a program is right, if its numbers are the robot's own to the digits written."""
     case = search.case
-    constant = (abs(x.flat[0]) for x in numbers_at(case).values() if x.size and np.ptp(x) == 0)
+    at = numbers_at(case)
+    constant = (abs(x.flat[0]) for x in at.values() if x.size and np.ptp(x) == 0)
     own = np.unique([*np.abs(own_numbers(case.robot)), *constant, *_ENDLESS])
     held = own[~np.isin(own, _ENDLESS)]
     columns = columns_as_meant(search.trial, search.observed, case.robot, _may_stand)
@@ -167,7 +168,7 @@ def _of_the_robot(search: LineSearch) -> Excuse | None:
             meant.append((place, one, exact))
     plain = [one for one in meant if not (4 * one[1].value).is_integer()]
     for some in (plain, meant) if len(plain) < len(meant) else (meant,):
-        found = _if_meant(search, some)
+        found = _if_meant(search, some, at)
         if found is not None:
             return found
     return None
@@ -189,7 +190,9 @@ def _is_limited(node: ast.AST) -> bool:
 
 
 def _if_meant(
-    search: LineSearch, meant: Sequence[tuple[NumberPlace, Literal, float]]
+    search: LineSearch,
+    meant: Sequence[tuple[NumberPlace, Literal, float]],
+    at: Mapping[str, Array],
 ) -> Excuse | None:
     """The excuse of numbers that stand for others, if all is right with these."""
     if not meant:
@@ -198,7 +201,7 @@ def _if_meant(
     whole = _Numbers(search, [*places], literals, range(0))
     answers = whole.answers({}, np.array(numbers_))
     far = sorted(meant, key=lambda one: -abs(one[2] / one[1].value - 1))
-    told = rounding_remarks([(one, exact) for _place, one, exact in far], numbers_at(search.case))
+    told = rounding_remarks([(one, exact) for _place, one, exact in far], at)
     if len(told) > _TOLD:
         more = _("{count} more numbers are rounded, too").format(count=len(told) - _TOLD)
         told = [*told[:_TOLD], more]

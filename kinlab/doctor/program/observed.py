@@ -45,6 +45,11 @@ class Seen:
     shape: Shape | None = None
     entries: Shape | None = None
 
+    @property
+    def nothing(self) -> bool:
+        """Whether it was zero, or zeros, whenever it was seen."""
+        return bool(self.values) and not any(map(np.any, self.values))
+
 
 class Observed:
     """The expressions of a program by their nodes in the trees of a trial.

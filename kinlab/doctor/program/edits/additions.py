@@ -6,8 +6,6 @@ import ast
 from collections.abc import Iterator
 from math import pi
 
-import numpy as np
-
 from kinlab.doctor.bytecode.syntax import copied, factors, names, nodes
 from kinlab.doctor.program.edits.scope import Scope, Turned, statement_of, stem_of, summands
 from kinlab.doctor.program.observed import Shape
@@ -86,7 +84,8 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     negative = isinstance(_leftmost(node), ast.UnaryOp) or isinstance(parent, ast.UnaryOp)
     pose = shape == (4, 4) and scope.is_pose(node)
     beside = parent.right if summand and first and isinstance(parent, ast.BinOp) else None
-    nothing = beside is not None and _is_zero(scope, beside)  # the sign is then that of the sum
+    seen = None if beside is None else scope.observed.of(beside)
+    nothing = seen is not None and seen.nothing  # the sign is then that of the sum
     if not negative and not pose and not nothing and (first or not operated):
         outer = here.above[-2] if isinstance(parent, ast.Tuple) else parent
         given = isinstance(outer, ast.Assign | ast.Return)
@@ -169,9 +168,9 @@ def _divided(here: Here, scope: Scope, summand: bool) -> Iterator[ProgramEdit]:
 
 def _is_mixed(here: Here) -> bool:
     """Whether it is the mixed term of a square of a sum: ``a*b*c`` beside ``a**2 + b**2``."""
-    above = [x for x in here.above if isinstance(x, ast.BinOp)]
+    above = (x for x in here.above if isinstance(x, ast.BinOp))
     sums = [x for x in above if isinstance(x.op, ast.Add | ast.Sub)]
-    if not sums or not isinstance(here.parent, ast.BinOp) or here.parent not in sums:
+    if here.parent not in sums:
         return False
     squared = {
         ast.unparse(x.left)
@@ -181,12 +180,6 @@ def _is_mixed(here: Here) -> bool:
     }
     own = {ast.unparse(x) for x in factors(here.node)}
     return len(own & squared) > 1
-
-
-def _is_zero(scope: Scope, node: ast.expr) -> bool:
-    """Whether a piece was nothing whenever it was passed."""
-    seen = scope.observed.of(node)
-    return seen is not None and bool(seen.values) and not any(map(np.any, seen.values))
 
 
 def _instead_of_zero(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

@@ -105,7 +105,7 @@ class Elsewhere:
         if isinstance(here.parent, ast.Call) and here.holder is here.parent.args and shape:
             for one in here.parent.args:  # the mass matrix's columns: no rates, no gravity
                 beside = observed.of(one) if isinstance(one, ast.Name) and one is not node else None
-                if beside and beside.shape == shape and not any(map(np.any, beside.values)):
+                if beside and beside.shape == shape and beside.nothing:
                     yield here.instead(one, "name", _NOTHING)
         if is_nothing(node) and isinstance(here.parent, ast.Assign):
             yield from _of_the_mirror(here)

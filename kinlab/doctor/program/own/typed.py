@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import inspect
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from types import FunctionType
 from typing import Any
 
@@ -33,7 +33,7 @@ def line_of(function: FunctionType, name: str, place: Sequence[Any]) -> int | No
     value = _given(found[0], name)
     if value is None:
         return found[0].lineno
-    for key in _keys(place):
+    for key in place:
         inner = _entry(value, key)
         if inner is None:
             break
@@ -51,11 +51,6 @@ def _given(line: ast.Assign | ast.AnnAssign, name: str) -> ast.expr | None:
             k = names.index(name)
             return line.value.elts[k] if len(line.value.elts) == len(names) else None
     return None
-
-
-def _keys(place: Sequence[Any]) -> Iterator[Any]:
-    for key in place:
-        yield from key if isinstance(key, tuple) else (key,)
 
 
 def _entry(value: ast.expr, key: Any) -> ast.expr | None:
