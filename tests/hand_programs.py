@@ -20,7 +20,7 @@ import kinlab as kl
 from kinlab.doctor.changes import Case
 from kinlab.doctor.examine import prepare
 from kinlab.doctor.program.read import read
-from kinlab.doctor.program.repair import LineSearch
+from kinlab.doctor.program.search.repair import LineSearch
 
 
 @dataclass(frozen=True)

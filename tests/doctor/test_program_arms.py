@@ -16,8 +16,8 @@ import kinlab as kl
 from kinlab.doctor.program.grounds.apart import arm_apart
 from kinlab.doctor.program.grounds.scaled import other_arm
 from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.places import changed
 from kinlab.doctor.program.read import read
-from kinlab.doctor.program.repair import changed
 from kinlab.doctor.program.trial import Trial
 
 ROUND = {"l1": 1.0, "l2": 1.0, "c1": 0.5, "c2": 0.5, "m1": 1.0, "m2": 1.0, "I1": 0.1, "I2": 0.1}

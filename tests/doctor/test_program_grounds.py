@@ -15,8 +15,8 @@ from kinlab.doctor.program.edits.single.comparisons import negated
 from kinlab.doctor.program.grounds.scaled import other_arm
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.own.calls import QUICK
+from kinlab.doctor.program.places import changed
 from kinlab.doctor.program.read import read
-from kinlab.doctor.program.repair import changed
 from kinlab.doctor.program.trial import FailedError, Trial
 
 TORQUES = """

@@ -9,7 +9,7 @@ from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.program.lanes.numbers import Laned, Lanes
 from kinlab.doctor.program.lanes.run import InLanes
 from kinlab.doctor.program.lanes.ways import Ways
-from kinlab.doctor.program.repair import changed
+from kinlab.doctor.program.places import changed
 from kinlab.doctor.program.trial import NoProgramError, quietly
 
 OTHERS = {

@@ -1,12 +1,11 @@
 """Edits that make a program right and are not its slip are not told."""
 
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import kinlab as kl
-from kinlab.doctor.program.repair import LineSearch
+from kinlab.doctor.program.search import solved
 
 M1, M2, L1, L2, g = 2.0, 1.5, 0.5, 0.4, 9.81  # planar2r
 
@@ -72,9 +71,7 @@ def test_the_step_of_a_difference_is_no_slip():
     [(2.0, 0.6143, True), (2.0, 1.5, False), (2.0, 1 / 3, False), (0.7, 0.6143, False)],
 )
 def test_a_number_of_the_arm_does_not_become_one_of_nobodys(old, new, makes_up) -> None:
-    search = LineSearch.__new__(LineSearch)
-    search.case = SimpleNamespace(robot=kl.load("planar2r"))
-    assert search.makes_up(old, new) is makes_up
+    assert solved.makes_up(kl.load("planar2r"), old, new) is makes_up
 
 
 def test_a_wrong_solution_is_not_left_out_by_giving_the_other_twice() -> None:

@@ -12,7 +12,6 @@ module            what it holds
 ``observed``      What every expression of a program was when it ran: its values, their shapes
 ``places``        The places of a program, and what is put there instead
 ``read``          The functions that a formula is made of, as syntax trees, and the data they use
-``repair``        The edits that make a program right
 ``trial``         A program run with edits in it
 ``variants``      Many edits of one function compiled together
 ``words``         A repair in words: the line, what stands there, what should
@@ -20,6 +19,7 @@ module            what it holds
 ``edits/``        What could stand in a program instead: every edit that undoes one kind of slip
 ``grounds/``      What speaks for an edit, and against it
 ``lanes/``        A program run once for many combinations of edits
+``search/``       How the edit is looked for that makes a program right
 ``several/``      Two or three edits that together make a program right
 ================  =================================================================================
 """

@@ -8,7 +8,7 @@ from typing import Any
 
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.program.places import ROUNDING, Here, ProgramEdit, called, places
-from kinlab.doctor.program.repair import LineSearch
+from kinlab.doctor.program.search.repair import LineSearch
 
 _SHORT = ("float16", "half", "float32", "single", "f2", "f4", "int16", "int32", "int64", "int")
 """Kinds of numbers with fewer digits than a float's."""

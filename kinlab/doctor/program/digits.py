@@ -16,8 +16,8 @@ from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.program.edits.numbers.as_the_arm import columns_as_meant, key_of
 from kinlab.doctor.program.edits.numbers.data import NumberPlace, numbers, together
 from kinlab.doctor.program.grounds.scaled import own_numbers
-from kinlab.doctor.program.places import ProgramEdit, called, places
-from kinlab.doctor.program.repair import LineSearch, changed
+from kinlab.doctor.program.places import ProgramEdit, called, changed, places
+from kinlab.doctor.program.search.repair import LineSearch
 from kinlab.doctor.program.trial import quietly
 from kinlab.doctor.text.meanings import CLOSE, stands_for
 from kinlab.doctor.text.stand_ins import roughly, rounding_remarks
@@ -87,18 +87,18 @@ class _Numbers:
 
     def answers(self, at: Mapping[str, Array], numbers: Array | None = None) -> Array:
         """Its answers at all states; NaN where it has none."""
-        return self._asked(range(len(self.search.wanted)), numbers)
+        return self._asked(range(len(self.search.asked.wanted)), numbers)
 
     def _asked(self, which: range, numbers: Array | None) -> Array:
         with changed(self.search.trial, () if numbers is None else self.edits(numbers)):
-            found = self.search.answers(which)
-        wanted = self.search.wanted[list(which)]
+            found = self.search.asked.answers(which)
+        wanted = self.search.asked.wanted[list(which)]
         return np.full_like(wanted, np.nan) if found is None else found
 
     @property
     def near(self) -> bool:
         """Whether all numbers together, each within its digits, may change the answers so much."""
-        target = essential(self.search.case, self.search.wanted[list(self.which)], self.which)
+        target = essential(self.search.case, self.search.asked.wanted[list(self.which)], self.which)
         now, numbers_ = self.values({}), np.array([one.value for one in self.literals])
         reach = np.zeros(len(now))
         for one, step in zip(self.literals, np.diag(numbers_ / _PARTS), strict=True):
@@ -113,7 +113,7 @@ class _Numbers:
 
 def of_rounded_numbers(search: LineSearch) -> Excuse | None:
     """Why a program is right, if rounded numbers are all that is off in it."""
-    case, wanted = search.case, search.wanted
+    case, wanted = search.case, search.asked.wanted
     if case.hand.shape != wanted.shape:
         return None
     gap = np.abs(essential(case, case.hand) - essential(case, wanted))
@@ -126,8 +126,8 @@ def of_rounded_numbers(search: LineSearch) -> Excuse | None:
     every = [*_literals(search)]
     size = int(np.prod(wanted.shape[1:], initial=1))
     which = range(min(len(wanted), -(-_OVER * len(every) // size) + 2))
-    run = max(search.amounts.values()) * len(which) // len(search.watched)
-    trees = sum(search.nodes)
+    run = max(search.work.amounts.values()) * len(which) // len(search.asked.watched)
+    trees = sum(search.work.nodes)
     turn = (run + _COMPILING * trees) * (len(every) + 1)
     if not every or turn > _WORK:
         return None
@@ -205,7 +205,7 @@ def _if_meant(
     if len(told) > _TOLD:
         more = _("{count} more numbers are rounded, too").format(count=len(told) - _TOLD)
         told = [*told[:_TOLD], more]
-    return rounded_otherwise(replace(search.case, hand=answers), search.wanted, told)
+    return rounded_otherwise(replace(search.case, hand=answers), search.asked.wanted, told)
 
 
 def _is_rounded(one: Literal, exact: float) -> bool:
@@ -281,7 +281,7 @@ def _stands(one: Literal, meant: float) -> bool:
 
 def _laid(own: _Numbers) -> Excuse | None:
     """The same of numbers of three digits or more, of which one may make up for another."""
-    case, wanted = own.search.case, own.search.wanted
+    case, wanted = own.search.case, own.search.asked.wanted
     target = essential(case, wanted[list(own.which)], own.which)
     scale = np.repeat(error_sizes(target), target[0].size)
     numbers_ = np.array([one.value for one in own.literals])

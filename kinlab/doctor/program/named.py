@@ -13,7 +13,7 @@ from kinlab.doctor.glossary.meaning import meaning_of, said
 from kinlab.doctor.glossary.textbook import Glossary, Sense
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit
-from kinlab.doctor.program.repair import LineSearch
+from kinlab.doctor.program.search.repair import LineSearch
 
 _PLAIN = ("positions", "velocities", "accelerations")
 """What everybody knows of a function's own arguments."""

@@ -5,12 +5,13 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from typing import Any
 
 from kinlab.doctor.bytecode.syntax import nodes, shallow
 from kinlab.doctor.program.own.definitions import ByDefault
-from kinlab.doctor.program.trial import FieldChange
+from kinlab.doctor.program.trial import FieldChange, Trial
 
 DATA = -1
 """In place of a part's number: an edit of the program's data."""
@@ -42,6 +43,12 @@ class ProgramEdit:
     numbers: tuple[float, float] | None = None
     exchanged: tuple[str, str] | None = None
     of_the_arm: bool = False
+
+
+def changed(trial: Trial, several: tuple[ProgramEdit, ...]) -> AbstractContextManager[None]:
+    """The program with edits in it."""
+    parts = {edit.part for edit in several}
+    return trial.changed(parts, [change for edit in several for change in edit.changes])
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,12 +20,13 @@ from kinlab.doctor.changes import Case, table_of
 from kinlab.doctor.program.cuts import cuts
 from kinlab.doctor.program.digits import of_rounded_numbers
 from kinlab.doctor.program.edits.numbers.as_the_arm import of_table
+from kinlab.doctor.program.grounds.scaled import is_own
 from kinlab.doctor.program.named import named
 from kinlab.doctor.program.own.definitions import DEFAULT
 from kinlab.doctor.program.own.typed import line_of
-from kinlab.doctor.program.places import BLOCKS, DATA, ProgramEdit, called, row_of
+from kinlab.doctor.program.places import BLOCKS, DATA, ProgramEdit, called, changed, row_of
 from kinlab.doctor.program.read import read
-from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
+from kinlab.doctor.program.search.repair import LineSearch, ProgramRepair
 from kinlab.doctor.program.several.repairs import several
 from kinlab.doctor.program.trial import FailedError, FieldChange, NoProgramError, Trial, quietly
 from kinlab.doctor.verdicts import Excuse, rounded_otherwise
@@ -150,9 +151,9 @@ def lines(
         search = LineSearch(program, case, wanted, allowed)
     except FailedError:  # what does not run where it was not written is not tried
         return
-    if not search.faithful:
+    if not search.asked.faithful:
         return
-    numbers = search.observed.numbers(len(search.states))
+    numbers = search.observed.numbers(len(search.asked.states))
     excuse = _of_cuts(search) or of_rounded_numbers(search)
     if excuse is not None:
         yield WrongLines([], search.written_out, numbers, excuse)
@@ -160,7 +161,7 @@ def lines(
     odd = any(True for _edit in of_table(search.trial, search.observed, case.robot))
     for found in (LineSearch.singles, several):
         repairs = found(search)[:_MOST]
-        if not search.faithful:
+        if not search.asked.faithful:
             return  # an edit has written into what the program keeps
         told = [one for one in (believed(repair, search) for repair in repairs) if one]
         causes = [cause_of(one, search) for one in told]
@@ -171,15 +172,15 @@ def lines(
 
 def _hiding(repair: ProgramRepair, search: LineSearch) -> str:
     """The kind of the slip that hides the others: without it, they do nothing; empty of none."""
-    own = search.values(search.first)
+    own = search.asked.values(search.asked.first)
     for edit in repair.edits if len(repair.edits) > 1 and own is not None else ():
         others = tuple(one for one in repair.edits if one is not edit)
         try:
             with quietly(), changed(search.trial, others):
-                values = search.values(search.first)
+                values = search.asked.values(search.asked.first)
         except NoProgramError:
             continue
-        if values is not None and own is not None and search.same(values, own):
+        if values is not None and own is not None and search.asked.same(values, own):
             return edit.kind
     return ""
 
@@ -193,10 +194,10 @@ def _of_cuts(search: LineSearch) -> Excuse | None:
     said = [told.format(place=_line(edit, search.trial), piece=_text(edit.node)) for edit in edits]
     try:
         with quietly(), changed(search.trial, edits):
-            answers = search.answers(range(len(search.wanted)))
+            answers = search.asked.answers(range(len(search.asked.wanted)))
             if answers is None or not _little(search.case.hand, answers):
                 return None
-            more = rounded_otherwise(replace(search.case, hand=answers), search.wanted, said)
+            more = rounded_otherwise(replace(search.case, hand=answers), search.asked.wanted, said)
             if more is None and (more := of_rounded_numbers(search)) is not None:
                 more = replace(more, remarks=(*said, *more.remarks))
     except NoProgramError:
@@ -564,7 +565,7 @@ def believed(repair: ProgramRepair, search: LineSearch) -> ProgramRepair | None:
     for _statement, own in _by_statement(repair, search.trial):
         if sum(edit.kind == "missing term" for edit in own) > 1:
             return None
-    exact = repair.error <= TOLERANCES.left_of_several or search.differences
+    exact = repair.error <= TOLERANCES.left_of_several or search.asked.differences
     if len(repair.edits) > _PAIR and repair.error > TOLERANCES.left_of_three:
         return None
     if len(repair.edits) > 1 and not (exact and _needed(repair, search)):
@@ -589,7 +590,7 @@ def _needed(repair: ProgramRepair, search: LineSearch) -> bool:
         others = tuple(one for one in repair.edits if one is not edit)
         if not own or _right(others, search):
             return False
-        if search.fits(others) and not search.holds_elsewhere(repair.edits):
+        if _fits(others, search) and not search.arms.holds_elsewhere(repair.edits):
             return False
     return True
 
@@ -601,8 +602,10 @@ def _robots_own(edit: ProgramEdit, search: LineSearch) -> bool:
         return False
     own = None if edit.place else vocabulary(table).values.get(edit.node)
     old, new = edit.numbers
-    named_so = own is not None and float(own) == old
-    return named_so or (search.is_own(old) and not (search.is_own(new) or edit.of_the_arm))
+    if own is not None and float(own) == old:
+        return True
+    is_old, is_new = (is_own(search.case.robot, x) for x in (old, new))
+    return is_old and not (is_new or edit.of_the_arm)
 
 
 def _of_rounding(edit: ProgramEdit, search: LineSearch) -> bool:
@@ -686,6 +689,15 @@ def _idle(edit: ProgramEdit, repair: ProgramRepair, search: LineSearch) -> Progr
 
 def _inside(node: object, of: ast.AST) -> bool:
     return any(one is node for one in nodes(of))
+
+
+def _fits(edits: tuple[ProgramEdit, ...], search: LineSearch) -> bool:
+    """Whether edits make the program right, be it for this arm alone."""
+    try:
+        with quietly(), changed(search.trial, edits):
+            return search.asked.fits()
+    except NoProgramError:
+        return False
 
 
 def _right(edits: tuple[ProgramEdit, ...], search: LineSearch) -> bool:

@@ -7,8 +7,10 @@ heavier, with the program's own numbers changed alike, they are not.
 from __future__ import annotations
 
 import ast
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cached_property
 from itertools import islice, product
 from typing import Any
@@ -53,6 +55,8 @@ _ROWS = ("array", "asarray", "diag")
 """Functions that make an array of a list."""
 _NOBODYS = (0.0, 1.0, 2.0)
 """Sizes of numbers with a name that need be nothing of an arm's."""
+_SIMPLE = 12
+"""Denominator up to which a fraction may be meant."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -236,6 +240,20 @@ def own_numbers(robot: Any) -> Array:
     return np.unique(every[every != 0.0])
 
 
+def is_own(robot: Any, value: float) -> bool:
+    """Whether the robot has a number, with its sign."""
+    return bool(np.isclose(own_numbers(robot), value, rtol=TOLERANCES.same_number, atol=0).any())
+
+
+def is_free(value: float) -> bool:
+    """Whether a number is neither whole, nor half of one, nor a simple part of it or of pi."""
+    simple = (Fraction(x).limit_denominator(_SIMPLE) for x in (value, value / np.pi))
+    return not any(
+        math.isclose(x, float(part), rel_tol=TOLERANCES.same_number)
+        for x, part in zip((value, value / np.pi), simple, strict=True)
+    )
+
+
 def _key(one: ProgramNumber) -> Any:
     """Numbers of one list are of one kind, and equal ones that are given on; others each alone."""
     if one.given:
@@ -253,12 +271,13 @@ def numbers_of(trial: Trial, observed: Observed) -> Iterator[ProgramNumber]:
     raised = (one for tree in trial.trees for one in nodes(tree) if isinstance(one, ast.BinOp))
     given |= {id(one.left) for one in raised if isinstance(one.op, ast.Pow)}  # 0.5**2
     below = {id(node.right): node for node in plain.values() if isinstance(node, ast.BinOp)}
+    above = {id(one) for whole in below.values() for one in nodes(whole.left)}
     idle = [leaf for name in unused(trial) for leaf in leaves_of(trial, name)]
     alone_idle = {leaf.node for leaf in idle if not leaf.place}
     directions = _directions(trial)
     for place in (*numbers(trial, observed), *_defaults(trial), *idle):
-        if id(place.holder) in directions:
-            continue
+        if id(place.holder) in directions or id(place.node) in above:
+            continue  # of 0.4/2 the 2 stands for both
         whole = below.get(id(place.node))
         if place.value and whole is not None:
             yield ProgramNumber(place, _above(whole) / place.value, True, below=True)

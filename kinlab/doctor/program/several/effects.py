@@ -17,7 +17,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.program.places import ProgramEdit
-from kinlab.doctor.program.repair import LineSearch
+from kinlab.doctor.program.search.repair import LineSearch
 from kinlab.doctor.text.pairs import pairs_adding_up
 from kinlab.tolerances import TOLERANCES
 
@@ -241,15 +241,16 @@ def _meeting(sought: Array, each: Array, near: float) -> list[tuple[int, int]]:
 
 def effects_of(search: LineSearch, tried: Tried) -> Effects | None:
     """The effects of edits that were tried; None where the program has no answer."""
-    values = search.values(search.first)
+    values = search.asked.values(search.asked.first)
     if values is None:
         return None
-    scale = search.scale
+    scale = search.asked.scale
     own = (values / scale).ravel()
     lost = ~np.isfinite(own)
     own[lost] = _NOWHERE
     kept: dict[Any, tuple[list[ProgramEdit], Array]] = {}
-    norm = search.wanted[0].size == 1  # vectors that are turned have the same energy: only alone
+    # vectors that are turned have the same energy: only alone
+    norm = search.asked.wanted[0].size == 1
     for edit, values in tried:
         row = (values / scale).ravel()
         effect = np.where(lost & ~np.isfinite(row), _NOWHERE, row) - own
@@ -268,7 +269,7 @@ def effects_of(search: LineSearch, tried: Tried) -> Effects | None:
         [edits for edits, _row in alike],
         np.array([row for _edits, row in alike]).reshape(len(alike), own.size),
         own,
-        (search.wanted[search.first] / scale).ravel() - own,
-        max(TOLERANCES.tried_further, search.allowed),
+        (search.asked.wanted[search.asked.first] / scale).ravel() - own,
+        max(TOLERANCES.tried_further, search.asked.allowed),
         search.likely,
     )

@@ -8,8 +8,8 @@ next such statement: three slips of a recursion take three looks, not all threes
 from __future__ import annotations
 
 from kinlab.doctor.program.grounds.suspects import behind
-from kinlab.doctor.program.places import DATA, ProgramEdit
-from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
+from kinlab.doctor.program.places import DATA, ProgramEdit, changed
+from kinlab.doctor.program.search.repair import LineSearch, ProgramRepair
 from kinlab.doctor.program.several.effects import Effects, Way
 from kinlab.doctor.program.several.witnesses import FirstStep, Witnesses
 from kinlab.doctor.program.trial import NoProgramError
@@ -104,7 +104,7 @@ class InOrder:
         return steps, suspected
 
     def _is_of_data(self, edit: ProgramEdit) -> bool:
-        parts = self.search.program.parts
+        parts = self.search.trial.program.parts
         return edit.part == DATA or bool(parts[edit.part].sets)
 
     def _looked(self, here: LineSearch, some: list[ProgramEdit]) -> list[FirstStep]:
@@ -114,7 +114,7 @@ class InOrder:
         witnesses = Witnesses(here)
         steps = witnesses.steps(some, min(self.left, _EACH))
         self.left -= witnesses.done
-        self.search.work += witnesses.done
+        self.search.work.done += witnesses.done
         return steps
 
 

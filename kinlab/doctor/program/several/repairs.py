@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from kinlab.doctor.glossary.meaning import meaning_of
-from kinlab.doctor.program.places import DATA, ProgramEdit
-from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
+from kinlab.doctor.program.places import DATA, ProgramEdit, changed
+from kinlab.doctor.program.search.repair import LineSearch, ProgramRepair
 from kinlab.doctor.program.several.effects import Chosen, Effects, Way, effects_of
 from kinlab.doctor.program.several.in_order import InOrder
 from kinlab.doctor.program.several.rest import AtRest
@@ -100,7 +100,7 @@ class _Several:
         known = effects_of(search, search.tried)
         if known is None or not known.alike:
             return []
-        pose = search.wanted.shape[1:] == _POSE
+        pose = search.asked.wanted.shape[1:] == _POSE
         tried = _Tried(search)
         found = tried.likeliest(known, known.adding_up(2))
         if not found and pose:
@@ -158,7 +158,7 @@ class _Several:
                 here = _beside(search, way)
                 here.most, here.in_lanes = _ALONE, _IN_LANES
                 found = here.singles()
-                self.left -= here.work // _WAYS
+                self.left -= here.work.done // _WAYS
             if found:
                 return found
         return []
@@ -181,11 +181,11 @@ class _Several:
             try:
                 with changed(search.trial, way):
                     here = _beside(search, way)
-                    more = (search.most - search.work) // _STEPS
+                    more = (search.most - search.work.done) // _STEPS
                     likeliest = 0 if turn else search.most // _STEPPING
                     here.most = min(max(here.most, more, likeliest), self.left)
                     found = here.singles()
-                    self.left -= here.work
+                    self.left -= here.work.done
                     # two more only beside the likeliest: others gain as much by accident
                     if not found and not turn and len(here.stand) < _DEEPEST:
                         found = self.found(here)
@@ -254,7 +254,7 @@ class _Tried:
         Beside one that makes it right others are looked at: what has the same effects, what comes
         next, and pairs that explain as much.
         """
-        most, before = self.search.most // 4, self.search.work
+        most, before = self.search.most // 4, self.search.work.done
         fitting: list[Way] = []
         for turn, chosen in enumerate(ranked):
             few = [*known.edits(chosen, _SIBLINGS if turn < _VERIFIED else 1)]
@@ -267,7 +267,7 @@ class _Tried:
                 if self._repair(way) is not None:
                     fitting = [way]
                     break
-            if fitting or most < 0 or self.search.work - before > self.search.most:
+            if fitting or most < 0 or self.search.work.done - before > self.search.most:
                 break
         if not fitting:
             return []
@@ -283,7 +283,7 @@ class _Tried:
         return self._ranked(fitting)
 
     def _cost(self, way: Way) -> int:
-        return max(self.search.cost_of(edit) for edit in way)
+        return max(self.search.work.of(edit) for edit in way)
 
     def _repair(self, way: Way) -> ProgramRepair | None:
         """The repair, if edits make the program right."""
@@ -297,10 +297,10 @@ class _Tried:
         """Whether edits make the program right at the first states."""
         try:
             with changed(self.search.trial, way):
-                values = self.search.values(self.search.first)
+                values = self.search.asked.values(self.search.asked.first)
         except NoProgramError:
             return False
-        return values is not None and bool(self.search.right(values).all())
+        return values is not None and bool(self.search.asked.right(values).all())
 
     def _ranked(self, ways: list[Way]) -> list[ProgramRepair]:
         """Those first that leave most of the program as a textbook has it."""

@@ -13,7 +13,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.doctor.derivations.parts import MOVING
 from kinlab.doctor.program.places import ProgramEdit
-from kinlab.doctor.program.repair import LineSearch
+from kinlab.doctor.program.search.repair import LineSearch
 from kinlab.doctor.program.several.effects import Effects
 from kinlab.doctor.program.trial import NoProgramError
 from kinlab.doctor.program.variants import Variants
@@ -29,7 +29,7 @@ class AtRest:
     """
 
     def __init__(self, search: LineSearch) -> None:
-        self.search = search
+        self.asked, self.work = search.asked, search.work
         self.own: Array | None = None
         case = search.case
         stacks = _states(case.arguments)
@@ -40,7 +40,7 @@ class AtRest:
                 wanted = np.asarray(replace(case, arguments=stacks).answer(()), dtype=float)
         except (KinlabError, np.linalg.LinAlgError, ValueError):
             return
-        self.search = search.at(replace(case, arguments=stacks), wanted)
+        self.asked = search.asked.at(replace(case, arguments=stacks), wanted)
         self.differences = any(name in MOVING for name in stacks)
         self.goal = self._parts(wanted)
         size = np.abs(self.goal).max(axis=tuple(range(1, wanted.ndim)), keepdims=True)
@@ -56,7 +56,7 @@ class AtRest:
         return parts
 
     def _values(self) -> Array | None:
-        values = self.search.values(self.search.first)
+        values = self.asked.values(self.asked.first)
         if values is None or not np.isfinite(values).all():
             return None
         parts: Array = self._parts(values) / self.scale
@@ -68,11 +68,11 @@ class AtRest:
             return None
         alike: list[list[ProgramEdit]] = []
         rows: list[Array] = []
-        trial = self.search.trial
+        trial = self.asked.trial
         variants = Variants(trial, [edits[0] for edits in known.alike])
         for edits in known.alike:
             edit = edits[0]
-            most -= self.search.cost_of(edit)
+            most -= self.work.of(edit)
             if most < 0:
                 break
             try:

@@ -19,7 +19,7 @@ from kinlab.arrays import Array
 from kinlab.doctor.changes import ANY_ZERO
 from kinlab.doctor.program.lanes.numbers import lanes_within, operation
 from kinlab.doctor.program.lanes.run import InLanes
-from kinlab.doctor.program.repair import LineSearch
+from kinlab.doctor.program.search.repair import LineSearch
 from kinlab.doctor.program.several.effects import Chosen, Effects
 from kinlab.doctor.program.trial import NoProgramError
 
@@ -87,11 +87,11 @@ class TriedTogether:
 
     def __init__(self, search: LineSearch, known: Effects) -> None:
         self.search, self.known = search, known
-        self.left = search.most if search.stand else max(_LEAST, _ALL - search.work)
+        self.left = search.most if search.stand else max(_LEAST, _ALL - search.work.done)
         self.count = 1 + (search.case.quantity.name in ANY_ZERO)
         self.sound = np.empty(0, dtype=int)
         self.usable, self.thorough, self.each = False, False, 0.0
-        states = search.states_at(search.first)
+        states = search.asked.states_at(search.asked.first)
         edits = known.alike[:_EDITS]
         for counts in (True, False):  # whole numbers may be what something is counted by
             try:
@@ -103,7 +103,7 @@ class TriedTogether:
                 break
         likeliest = min(_BLOCK, len(self.sound)) ** 2 // 2
         self.thorough = self.usable and self._within(_SPARED * self.left) >= likeliest
-        size = known.rows.shape[1] * self.count // len(search.first)
+        size = known.rows.shape[1] * self.count // len(search.asked.first)
         self.weights = np.random.default_rng(5).uniform(0.5, 1.5, size)
         self.three = min(_THREE, math.isqrt(_KEPT // max(size, 1)))
         self.both = np.full((self.three, self.three, size), np.nan)
@@ -138,12 +138,12 @@ class TriedTogether:
         most = min(_BEYOND + max(self.left, 0), most)
         found = self.lanes.answers(chosen, count, most)
         self.left -= self.lanes.work - before
-        values = None if found is None else self.search.of_lanes(found)
+        values = None if found is None else self.search.asked.of_lanes(found)
         if values is None:
             return None
         if self.search.case.quantity.read is not None:
             self.left -= _TO_READ * values.shape[0] * values.shape[1]
-        rows: Array = (values / self.search.scale[: values.shape[1]]).reshape(len(chosen), -1)
+        rows: Array = (values / self.search.asked.scale[: values.shape[1]]).reshape(len(chosen), -1)
         self.left -= rows.size // _NUMBERS
         return self.known.known(rows) - self.known.own[: rows.shape[1]]
 
@@ -151,7 +151,7 @@ class TriedTogether:
         """Which of some combinations make the program right; and what all do at first."""
         rows = self._rows(chosen, self.count)
         right = chosen[self._fits(rows)] if rows is not None else chosen[:0]
-        if len(right) and self.count < len(self.search.first):
+        if len(right) and self.count < len(self.search.asked.first):
             whole = self._rows(right, None)
             right = right[self._fits(whole)] if whole is not None else right[:0]
         return right, rows

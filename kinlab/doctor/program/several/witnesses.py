@@ -22,7 +22,7 @@ from kinlab.doctor.glossary.textbook import Glossary
 from kinlab.doctor.program.grounds.evidence import zeros_and_ones
 from kinlab.doctor.program.grounds.suspects import TERM
 from kinlab.doctor.program.places import ProgramEdit, called
-from kinlab.doctor.program.repair import LineSearch
+from kinlab.doctor.program.search.repair import LineSearch
 from kinlab.doctor.program.trial import FieldChange, NoProgramError
 from kinlab.doctor.program.variants import Variants
 from kinlab.tolerances import TOLERANCES
@@ -93,7 +93,7 @@ class Witnesses:
         self.terms = {what for what, rank in {x.what: k for k, x in ranks}.items() if rank >= TERM}
         self.told: dict[int, Watched] = {}
         self.marks = {shape: _marks(self.grounds.known, shape) for shape in _SHAPES}
-        self.there = search.observed.values(len(search.watched))
+        self.there = search.observed.values(len(search.asked.watched))
         self.places = [place for tree in search.trial.trees for place in _places(tree)]
 
     def steps(self, edits: Sequence[ProgramEdit], most: int) -> list[FirstStep]:
@@ -128,8 +128,8 @@ class Witnesses:
 
     def cost_of(self, edit: ProgramEdit) -> int:
         """What watching the program with an edit amounts to."""
-        own = len(self.search.first)
-        return self.search.cost_of(edit) * _FIRST // own if own else 0
+        own = len(self.search.asked.first)
+        return self.search.work.of(edit) * _FIRST // own if own else 0
 
     def _saws(self) -> list[FieldChange]:
         return [
@@ -142,7 +142,7 @@ class Witnesses:
         search, self.told = self.search, {}
         search.trial.space["_saw"] = self._see
         try:
-            for state in search.states[:_FIRST]:
+            for state in search.asked.states[:_FIRST]:
                 search.trial.function(*(x.copy() for x in state))
         except Exception:  # noqa: BLE001  what edited programs may raise
             return {}

@@ -1,0 +1,137 @@
+"""Which edits of a program are tried, and what they cost."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.program.edits.every import edits
+from kinlab.doctor.program.edits.numbers.as_the_arm import as_it_is, of_table
+from kinlab.doctor.program.edits.numbers.own_numbers import of_own_numbers
+from kinlab.doctor.program.edits.scope import Scope
+from kinlab.doctor.program.grounds.dimensions import LIKE, Dimensions
+from kinlab.doctor.program.grounds.products import missing_products
+from kinlab.doctor.program.grounds.scaled import is_own, own_rows
+from kinlab.doctor.program.grounds.terms import missing_terms
+from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.places import DATA, ProgramEdit
+from kinlab.doctor.program.search.asked import Asked
+from kinlab.doctor.program.trial import Trial
+
+_MADE = 0.97
+"""Cost of an exchange after which a row is the robot's."""
+_ROW = 3
+"""Numbers of a row that tell whose it is."""
+
+
+def chosen(
+    asked: Asked, observed: Observed, dimensions: Dimensions, below: float, most: int
+) -> list[ProgramEdit]:
+    """The likeliest edits, with what their dimensions add to what they cost.
+
+    Args:
+        asked: the program, and what it should answer.
+        observed: what its expressions were.
+        dimensions: of its expressions.
+        below: what an edit costs at most.
+        most: how many.
+    """
+    trial, robot = asked.trial, asked.case.robot
+    scopes = [Scope(trial, observed, k) for k in range(len(trial.trees))]
+    every = edits(trial, observed, scopes)
+    every += of_table(trial, observed, robot)
+    every += of_own_numbers(trial, observed, robot, *map(asked.watched_of, ("q", "a")))
+    every += missing_products(trial, observed, scopes, dimensions)
+    every += missing_terms(trial, observed, scopes, dimensions)
+    sure = as_it_is(trial, observed, robot)
+    mirrors, rows = _mirroring(asked, observed), own_rows(robot)
+    every = [
+        edit
+        for edit in every
+        if not sure(edit) and edit.cost < below
+        if not (mirrors(edit) or _moves_one_of(rows, edit))
+    ]
+    every = [replace(x, cost=_MADE) if _makes_one_of(rows, x) else x for x in every]
+    every = sorted(every, key=_at_best)[:most]
+    weigh = dimensions.against
+    return [replace(x, cost=x.cost + more) if (more := weigh(x)) else x for x in every]
+
+
+def _mirroring(asked: Asked, observed: Observed) -> Callable[[ProgramEdit], bool]:
+    """Whether a number that has a name, and is the robot's, would have the other sign."""
+    named, robot = _named_numbers(asked.trial), asked.case.robot
+    parts = asked.trial.program.parts
+
+    def mirrors(edit: ProgramEdit) -> bool:
+        if edit.kind != "sign":
+            return False
+        if edit.part == DATA and edit.numbers and not edit.place:
+            old: Any = edit.numbers[0]
+        elif isinstance(edit.node, ast.Constant) and id(edit.changes[0].holder) in named:
+            old = edit.node.value
+        elif edit.part != DATA and parts[edit.part].sets:
+            seen = observed.of(edit.node)  # worked out as the module is loaded
+            old = float(seen.values[0]) if seen and seen.shape == () and seen.values else None
+        else:
+            return False
+        return isinstance(old, int | float) and is_own(robot, old) and not is_own(robot, -old)
+
+    return mirrors
+
+
+def _at_best(edit: ProgramEdit) -> float:
+    """What an edit costs if nothing speaks against it."""
+    return edit.cost - LIKE * (edit.kind == "name")
+
+
+def _makes_one_of(rows: list[Array], edit: ProgramEdit) -> bool:
+    """Whether numbers that are exchanged stand then as the robot has them in a row."""
+    if edit.kind != "entries swapped" or _moves_one_of(rows, edit):
+        return False
+    first, row = edit.changes[0], getattr(edit.node, "elts", None)
+    if edit.part != DATA:
+        values = [getattr(one, "value", None) for one in first.new] if row else []
+    elif isinstance(first.holder, list):
+        values = [*first.holder]
+        for change in edit.changes:
+            if change.holder is first.holder and isinstance(change.field, int):
+                values[change.field] = change.new
+    else:
+        values = [*first.new] if isinstance(first.new, tuple) else []
+    if len(values) < _ROW or not all(isinstance(x, int | float) for x in values):
+        return False
+    new = np.array(values, dtype=float)
+    return any(own.shape == new.shape and np.allclose(own, new) for own in rows)
+
+
+def _moves_one_of(rows: list[Array], edit: ProgramEdit) -> bool:
+    """Whether numbers that stand as the robot has them would be exchanged in their row."""
+    row = edit.node
+    if edit.kind not in ("entries swapped", "reversed", "shifted") or edit.of_the_arm:
+        return False
+    if edit.part == DATA:
+        values = edit.changes[0].holder if isinstance(edit.changes[0].holder, list) else []
+    else:
+        values = [getattr(one, "value", None) for one in getattr(row, "elts", ())]
+    if len(values) < _ROW or not all(isinstance(x, int | float) for x in values):
+        return False
+    written = np.array(values, dtype=float)
+    return any(own.shape == written.shape and np.allclose(own, written) for own in rows)
+
+
+def _named_numbers(trial: Trial) -> set[int]:
+    """Where numbers hang that statements give names to."""
+    found: set[int] = set()
+    for tree in trial.trees:
+        for node in nodes(tree):
+            if isinstance(node, ast.Assign):
+                found.add(id(node))
+                if isinstance(node.value, ast.Tuple) and isinstance(node.targets[0], ast.Tuple):
+                    found.add(id(node.value.elts))
+    return found

@@ -1,0 +1,368 @@
+"""The edits that make a program right: one, or several together.
+
+Each edit is tried at a few states; what is right there is tried at all of them. The work is
+counted in what its operations amount to, not in seconds, so that the answer is the same on every
+machine.
+"""
+
+from __future__ import annotations
+
+import ast
+import copy
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.changes import Case, table_of
+from kinlab.doctor.glossary.linkage import linkage_meanings
+from kinlab.doctor.glossary.textbook import Glossary, meanings
+from kinlab.doctor.program.grounds.dimensions import Dimensions
+from kinlab.doctor.program.grounds.evidence import Grounds
+from kinlab.doctor.program.grounds.suspects import suspects
+from kinlab.doctor.program.lanes.run import InLanes
+from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.places import DATA, ProgramEdit, called, changed, row_of
+from kinlab.doctor.program.read import OwnProgram
+from kinlab.doctor.program.search.arms import other_arms_of
+from kinlab.doctor.program.search.asked import Asked
+from kinlab.doctor.program.search.chosen import chosen
+from kinlab.doctor.program.search.solved import Solver
+from kinlab.doctor.program.search.work import Work
+from kinlab.doctor.program.trial import FailedError, NoProgramError, Trial, quietly
+from kinlab.doctor.program.variants import Variants
+from kinlab.fivebar.linkage import FiveBar
+from kinlab.tolerances import TOLERANCES
+
+_WORK = 45_000_000
+"""Operations of numbers, or what amounts to them, of which all searches have their share."""
+_ALONE = 50_000_000
+"""What may be done for single edits beside which none stands."""
+_FURTHER = 6000
+"""Edits that are run all at once where there is no time to run each."""
+_QUICK = 1300
+"""Edits that have been run alone by then, of programs of which lanes are worth the time."""
+_MORE_WORK, _WOVEN = 70_000_000, 5000
+"""Work that may be done for them; what putting one in amounts to."""
+_AT_ONCE = 400
+"""How many of them at a time."""
+_WEIGHED = 9000
+"""Edits that are weighed, and may be tried."""
+_SHARE = 6
+"""Of that work, the part of each search beside edits that stand already."""
+_TIED = 0.06
+"""Cost beyond the first repair's up to which others are looked for."""
+_DOUBTED = 0.12
+"""The same where a factor is found that a name of the program has as its value."""
+_ROUGH, _ROUGHER = 0.15, 100.0
+"""What a repair costs more that leaves differences; how much more one may leave than another."""
+_ALIKE = 0.03
+"""Costs that are nothing to go by beside what a repair leaves right."""
+_BESIDE = 0.08
+"""The same of a missing term beside a factor, where it makes more what a textbook has."""
+_SAME = 0.011
+"""Costs that are one."""
+_HELD = 8
+"""Repairs of which it is looked whether they hold for other arms."""
+_RIVALS = 4
+"""Lines of which it is looked what their repairs leave right."""
+_TORQUES = (
+    "inverse_dynamics",
+    "forward_dynamics",
+    "gravity_torques",
+    "coriolis_torques",
+    "lagrange_torques",
+)
+"""Quantities whose numbers are of one dimension, where all joints turn."""
+_MORE = 6
+"""States at which what is right at the first ones is tried before all of them."""
+_DEAR = 0.06
+"""What an edit waits longer for ten times the work."""
+_SUSPECTED = 2
+"""Of so much work one part goes first to statements that are wrong though their parts are right."""
+_NUMBER = 1.15
+"""Cost of an edit above which it is rather a wrong number that explains the program."""
+_SOLVED = 1_200_000
+"""Work beyond that for single edits in which wrong numbers are solved for."""
+_STANDING = 2
+"""Edits beside which some number would do too easily."""
+
+
+@dataclass(frozen=True, eq=False)
+class ProgramRepair:
+    """Edits that make a program right.
+
+    Attributes:
+        edits: one or several.
+        error: the relative error that is left.
+        cost: how far-fetched they are.
+        rivals: repairs of other lines that nothing tells from this one.
+    """
+
+    edits: tuple[ProgramEdit, ...]
+    error: float
+    cost: float
+    rivals: tuple[ProgramRepair, ...] = ()
+
+
+class LineSearch:
+    """A wrong program beside what it should answer.
+
+    Args:
+        program: what was read of it.
+        case: the states, and the program's own answers.
+        wanted: the right answers, (N, ...).
+        allowed: the relative error that may be left.
+    """
+
+    def __init__(self, program: OwnProgram, case: Case, wanted: Array, allowed: float) -> None:
+        self.stand: tuple[ProgramEdit, ...] = ()
+        self.tried: list[tuple[ProgramEdit, Array]] = []
+        self.most, self.in_lanes = _WORK, _ALONE + _MORE_WORK
+        self.trial, self.case = Trial(program), case
+        self.asked = Asked(self.trial, case, wanted, allowed)
+        states = [
+            {name: stack[k] for name, stack in case.arguments.items()} for k in self.asked.watched
+        ]
+        self.known: list[Glossary] = []
+        if isinstance(case.robot, FiveBar):
+            self.known = [linkage_meanings(case.robot, state) for state in states]
+        elif table_of(case.robot) is not None:
+            self.known = [meanings(case.robot, state) for state in states]
+        self.observed = Observed(self.trial, self.asked.states)
+        self.work = Work(self.asked, self.observed)
+        self.evidence = Grounds(self.trial, self.observed, self.known)
+        self.arms = other_arms_of(self.asked, self.observed, self.work)
+        given, alike = [*case.arguments], case.quantity.name in _TORQUES
+        self.dimensions = Dimensions(
+            self.trial, self.observed, case.robot, given, self.asked.states, alike
+        )
+        self.suspected = suspects(self.trial, self.observed, self.known)
+        self.suspected |= self.dimensions.apart
+
+    @property
+    def written_out(self) -> bool:
+        """Whether it is a formula written out: no loops, no products of matrices."""
+        return not any(
+            isinstance(node, ast.For | ast.While | ast.comprehension | ast.MatMult)
+            or (isinstance(node, ast.Call) and called(node) in ("cross", "dot"))
+            for part in self.trial.program.parts
+            for node in nodes(part.tree)
+        )
+
+    def beside(self, stand: tuple[ProgramEdit, ...]) -> LineSearch:
+        """The search for more, while edits stand in the program."""
+        other = copy.copy(self)
+        other.stand, other.tried = stand, []
+        other.most, other.in_lanes = self.most // _SHARE, 0
+        other.work = copy.copy(self.work)
+        other.work.done = 0
+        other.arms = replace(self.arms, work=other.work)
+        return other
+
+    def look_again(self) -> None:
+        """Watches the program as it stands now: what is right in it may be more than before."""
+        self.observed = Observed(self.trial, self.asked.states)
+        self.arms = replace(self.arms, observed=self.observed)
+        self.evidence = Grounds(self.trial, self.observed, self.known)
+
+    def singles(self, below: float = np.inf) -> list[ProgramRepair]:
+        """Single edits that make the program right, the likeliest first.
+
+        Args:
+            below: what they cost at most.
+        """
+        found: list[ProgramRepair] = []
+        best, doubted = np.inf, False
+        limit = self.most if self.stand else _ALONE
+        with quietly():
+            most = _WEIGHED // 3 if self.stand else _WEIGHED
+            every = chosen(self.asked, self.observed, self.dimensions, below, most)
+            tried = self._in_turn(sorted(every, key=self._dear))
+            variants = Variants(self.trial, tried)
+            for turn, edit in enumerate(tried):
+                farthest = best + (_DOUBTED if doubted else _TIED)
+                if found and self.likely(edit) > farthest:
+                    continue
+                self.work.done += self.work.of(edit)
+                if self.work.done > limit and not (found or self.stand) and turn <= _QUICK:
+                    limit = _ALONE + _MORE_WORK  # lanes would take as long
+                if self.work.done > limit:
+                    found = found or self._in_lanes(tried[turn:][:_FURTHER])
+                    break
+                try:
+                    with self.trial.changed({edit.part}, edit.changes, variants.of(edit)):
+                        values = self.asked.values(self.asked.first)
+                        if values is None:
+                            continue
+                        self.tried.append((edit, values))
+                        repair = self.verdict((*self.stand, edit), values)
+                except NoProgramError:
+                    continue
+                if repair is not None:
+                    found.append(repair)
+                    rough = repair.error > TOLERANCES.formula_agrees
+                    best = min(best, self.likely(edit) + _ROUGH * rough)
+                    doubted = doubted or self.evidence.coincident(edit)
+            found = self._by_evidence(found)
+            if below < np.inf:
+                return found
+            if len(self.stand) < _STANDING and (not found or best > _NUMBER):
+                found = self._numbers() + found
+            elif not self.stand and found[0].edits[-1].part != DATA:
+                found = self._numbers(strange=True) + found
+        return found
+
+    def _in_lanes(self, rest: list[ProgramEdit]) -> list[ProgramRepair]:
+        """Those of further edits that make the program right: they are run all at once."""
+        own = self.asked.values(self.asked.first)
+        if own is None:
+            return []
+        found: list[ProgramRepair] = []
+        for k in range(0, len(rest), _AT_ONCE):
+            if self.work.done > self.in_lanes:
+                break
+            for edit, values in self._run_at_once(rest[k : k + _AT_ONCE], own):
+                self.tried.append((edit, values))
+                if self.asked.right(values).all():
+                    with changed(self.trial, (edit,)):
+                        repair = self.verdict((*self.stand, edit))
+                    found += [] if repair is None else [repair]
+        return found
+
+    def _run_at_once(self, some: list[ProgramEdit], own: Array) -> list[tuple[ProgramEdit, Array]]:
+        """What edits make of the program, as far as lanes can follow it."""
+        states, left = self.asked.states_at(self.asked.first), self.in_lanes - self.work.done
+        try:
+            lanes = InLanes(self.trial, self.observed, [[one] for one in some], states, False)
+        except NoProgramError:
+            return []
+        none, each = np.array([[-1]]), np.arange(len(some))[:, None]
+        answers = [lanes.answers(which, None, left) for which in (none, each)]
+        self.work.done += lanes.work + _WOVEN * len(some)
+        as_it_is, values = (None if one is None else self.asked.of_lanes(one) for one in answers)
+        if as_it_is is None or values is None or not self.asked.same(as_it_is[0], own):
+            return []
+        placed = [k for k in sorted(lanes.placed) if np.isfinite(values[k]).all()]
+        return [(some[k], values[k]) for k in placed]
+
+    def _by_evidence(self, found: list[ProgramRepair]) -> list[ProgramRepair]:
+        """The likeliest first; of repairs of several lines the one that leaves more of them right.
+
+        What nothing tells apart is marked as tied.
+        """
+        least = max(TOLERANCES.formula_agrees, _ROUGHER * min([x.error for x in found], default=0))
+        found = [repair for repair in found if repair.error <= least]
+        found.sort(key=lambda repair: self.likely(repair.edits[-1]))
+        if len(found) < 2 or not self.evidence.known:
+            return found
+        found = self.of_any_arm(found)
+        best = found[0].edits[-1]
+        likeliest = self.likely(best)
+        lines: dict[Any, ProgramRepair] = {}
+        for repair in found:
+            edit = repair.edits[-1]
+            if edit.part == DATA:
+                continue
+            if self.likely(edit) <= likeliest + _ALIKE:
+                lines.setdefault(row_of(edit), repair)
+            elif self.likely(edit) <= likeliest + _BESIDE and _more_than(best, edit):
+                lines.setdefault((row_of(edit), edit.kind), repair)
+        if len(lines) < 2:
+            return found
+        rights = {id(one): self.left_right(one.edits[-1:]) for one in [*lines.values()][:_RIVALS]}
+        most = max(rights.values())
+        ahead = [one for one in lines.values() if rights.get(id(one)) == most]
+        first = ahead[0]
+        least = self.likely(first.edits[-1]) + _SAME
+        same = [
+            one
+            for one in ahead
+            if abs(one.cost - first.cost) <= _SAME and self.likely(one.edits[-1]) <= least
+        ]
+        first = replace(first, rivals=tuple(same[1:2]))
+        return [first, *(one for one in found if one.edits != first.edits)]
+
+    def of_any_arm(self, found: list[ProgramRepair]) -> list[ProgramRepair]:
+        """Of repairs those that hold for other arms too, where some do and some do not."""
+        for kind, _arm in enumerate(self.arms.before):
+            held: list[ProgramRepair] = []
+            for repair in found[:_HELD]:
+                with changed(self.trial, repair.edits[len(self.stand) :]):
+                    other = self.arms.of(repair.edits)[kind]
+                    held += [repair] if other is not None and self.arms.hold_for(other) else []
+            if held:
+                return [*held, *(one for one in found[_HELD:])]
+        return found
+
+    def _numbers(self, strange: bool = False) -> list[ProgramRepair]:
+        """The single number, of the text or the data, with which the program is right.
+
+        Of several the one that is typed with the fewest digits: others only make up for it.
+
+        Args:
+            strange: only those of the data that are none of the robot's, and become one.
+        """
+        found: list[tuple[float, int, ProgramRepair]] = []
+        solver = Solver(self.asked, self.observed, self.evidence, self.work)
+        most = (self.most if self.stand else _ALONE) + _SOLVED
+        for value, edit in solver.edits(most, strange):
+            with changed(self.trial, (edit,)):
+                repair = self.verdict((*self.stand, edit))
+            if repair is not None:
+                found.append((self.evidence.against(edit), len(f"{value:.12g}"), repair))
+        return [min(found, key=lambda one: one[:2])[2]] if found else []
+
+    def left_right(self, several: tuple[ProgramEdit, ...]) -> int:
+        """How many statements are what a textbook has, once edits stand."""
+        with changed(self.trial, several):
+            try:
+                return self.evidence.count(Observed(self.trial, self.asked.states))
+            except FailedError:  # what cannot be watched tells nothing
+                return 0
+
+    def likely(self, edit: ProgramEdit) -> float:
+        """Its cost, and what speaks against it."""
+        return edit.cost + self.evidence.against(edit)
+
+    def _dear(self, edit: ProgramEdit) -> float:
+        """Its cost, a little more where much has to be run anew."""
+        run, whole = max(1, self.work.amounts[edit.part]), max(1, self.work.amounts[0])
+        return self.likely(edit) + _DEAR * float(np.log10(run / whole))
+
+    def _in_turn(self, ranked: list[ProgramEdit]) -> list[ProgramEdit]:
+        """The likeliest first, and in turn with them those of suspected statements."""
+        turn: dict[ProgramEdit, float] = {}
+        every = among = 0
+        for edit in ranked:
+            every += self.work.of(edit)
+            turn[edit] = every
+            if id(edit.node) in self.suspected:
+                among += self.work.of(edit)
+                turn[edit] = min(every, _SUSPECTED * among)
+        return sorted(ranked, key=lambda edit: turn[edit])
+
+    def verdict(
+        self, several: tuple[ProgramEdit, ...], values: Array | None = None
+    ) -> ProgramRepair | None:
+        """The repair, if the program as it stands now is right at every state."""
+        values = self.asked.values(self.asked.first) if values is None else values
+        if values is None or not self.asked.right(values).all():
+            return None
+        error = 0.0
+        for count in (min(_MORE, len(self.asked.wanted)), len(self.asked.wanted)):
+            self.work.done += self.work.of_all(count)
+            error = self.asked.error(range(count))
+            if not error <= self.asked.allowed:
+                return None
+        if self.arms.only_here(several):
+            return None
+        return ProgramRepair(several, error, sum(edit.cost for edit in several))
+
+
+def _more_than(factor: ProgramEdit, edit: ProgramEdit) -> bool:
+    """Whether an edit adds a term to what another one only multiplies, in one line."""
+    same = factor.part == edit.part != DATA and row_of(factor) == row_of(edit)
+    return same and (factor.kind, edit.kind) == ("factor", "missing term")
