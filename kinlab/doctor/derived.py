@@ -283,8 +283,14 @@ class Derivation:
 
     def forms(self, poly: Poly) -> list[Node]:
         """The ways in which people write the same entry."""
-        made = [self.tree(poly), self.grouped(poly), self.collected(poly)]
-        return list(dict.fromkeys([*made, *self.factored(poly)]))
+        if poly not in self._forms:
+            made = [self.tree(poly), self.grouped(poly), self.collected(poly)]
+            self._forms[poly] = list(dict.fromkeys([*made, *self.factored(poly)]))
+        return self._forms[poly]
+
+    @cached_property
+    def _forms(self) -> dict[Poly, list[Node]]:
+        return {}
 
     def environment(self, states: Mapping[str, Array]) -> dict[str, Array]:
         """Values of every name: the joints' from the states, the parameters' from the table."""

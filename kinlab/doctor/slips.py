@@ -13,9 +13,10 @@ from kinlab.check.compare import relative_errors
 from kinlab.check.diagnosis import Cause
 from kinlab.doctor import terms
 from kinlab.doctor.changes import AnswerEntry, Case, Confusion, entries
-from kinlab.doctor.confusions.centres import apart, by_equal_numbers
+from kinlab.doctor.confusions.centres import FreeCentres, apart, by_equal_numbers, stands_so
+from kinlab.doctor.definitions import Definitions
 from kinlab.doctor.derived import Derivation, searchable
-from kinlab.doctor.linkages.looked_up import reference_of
+from kinlab.doctor.linkages.looked_up import Reference, reference_of
 from kinlab.doctor.terms import Slip
 from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import numbers_at
@@ -47,7 +48,8 @@ def slips_in(
         defined.append(one)
         written = _defined_otherwise(written, one)
         off = _still_off(case, every, written)
-    per_entry = [*([one] for one in defined), *_per_entry(case, off, written)]
+    several = [] if defined else _with_one_more(case, every, off, written)
+    per_entry = several or [*([one] for one in defined), *_per_entry(case, off, written)]
     if not all(per_entry):
         return [], tuple(found[0].sentence for found in per_entry if found)
     # alternatives are told for one entry at a time; all of all would be a flood
@@ -87,24 +89,77 @@ def _defined(
     None that a right formula uses, and none that makes wrong what another one has made right:
     ``every`` are the entries that were off at first.
     """
-    derived = reference_of(case)
-    if derived is None or any(entry.label not in written for entry in off):
-        return None
-    wrong = {entry.label for entry in every}
-    sound = {x for label, text in written.items() if label not in wrong for x in text.definitions}
     found: list[tuple[int, Slip]] = []
-    plainest = sorted(off, key=lambda entry: len(written[entry.label].definitions))
-    for entry in plainest[:_PATIENCE]:
-        text = written[entry.label]
-        of = (derived, derived.entry(entry.index), case.quantity.arguments, case.arguments)
-        for slip in terms.in_definitions(text, *of):
+    told = set[str]()
+    for entry, some in _definitions(case, every, off, written):
+        for slip in some.single() if entry.label not in told else ():
             left = _still_off(case, every, _defined_otherwise(written, slip))
-            if len(left) >= len(off) or (slip.defined and slip.defined[0] in sound):
+            if len(left) >= len(off):
                 continue
-            if len(left) < len(off) - 1 or _is_simpler(slip, of_entry(case, entry, text)):
+            text = written[entry.label]
+            # of what is right by one change of a definition, only one of the formula is as simple
+            if len(left) < len(off) - 1 or _is_simpler(slip, of_entry(case, entry, text, 1)):
                 slip = slip.with_error(entry.error(slip.values, entry.engine))
                 found.append((len(left), slip))
-    return min(found, key=lambda one: one[0])[1] if found else None
+                told.add(entry.label)
+    return min(found, key=lambda one: (one[0], one[1].cost))[1] if found else None
+
+
+def _with_one_more(
+    case: Case, every: list[AnswerEntry], off: list[AnswerEntry], written: dict[str, Written]
+) -> list[list[Slip]]:
+    """Slips in definitions with which one more slip explains each entry; none if there are none."""
+    for entry, some in _definitions(case, every, off, written):
+        if of_entry(case, entry, written[entry.label], 2):
+            return []
+        for slips in some.with_one_more():
+            changed = written
+            for slip in slips:
+                changed = _defined_otherwise(changed, slip)
+            left = _still_off(case, every, changed)
+            more = _per_entry(case, left, changed)
+            if all(more) and len(left) <= len(off):
+                told = [slip.with_error(0.0) for slip in slips[:-1]]
+                last = slips[-1]
+                error = entry.error(last.values, entry.engine) if not left else 0.0
+                return [*([one] for one in told), [last.with_error(error)], *more]
+    return []
+
+
+def _definitions(
+    case: Case, every: list[AnswerEntry], off: list[AnswerEntry], written: dict[str, Written]
+) -> Iterator[tuple[AnswerEntry, Definitions]]:
+    """The names of a writer's in what is off, of a few entries, those with the fewest names first.
+
+    Without names that a right formula uses, and those that stand for what books call so.
+    """
+    derived = reference_of(case)
+    if derived is None or any(entry.label not in written for entry in off):
+        return
+    wrong = {entry.label for entry in every}
+    sound = {x for label, text in written.items() if label not in wrong for x in text.definitions}
+    plainest = sorted(off, key=lambda entry: len(written[entry.label].definitions))
+    for entry in plainest[:_PATIENCE]:
+        text, elsewhere = _as_read(case, entry, written[entry.label], derived)
+        of = (derived, derived.entry(entry.index), case.quantity.arguments, case.arguments)
+        here = derived.environment(case.arguments)
+        for line, told in terms.lines_apart(text, *of, elsewhere) if text.definitions else ():
+            names = [name for name in line.text.definitions if name not in sound]
+            if isinstance(derived, Derivation):
+                names = [x for x in names if not stands_so(line.text, x, derived.arm.words)]
+            if names:
+                yield entry, Definitions(line, told, here, names)
+
+
+def _as_read(
+    case: Case, entry: AnswerEntry, text: Written, derived: Reference
+) -> tuple[Written, FreeCentres | None]:
+    """A text with equal numbers of the arm's by their names, and the same of free centres."""
+    poly = derived.entry(entry.index)
+    if not isinstance(derived, Derivation) or not searchable(poly):
+        return text, None
+    text = by_equal_numbers(text, derived, poly)
+    return text, apart(case, entry, text, poly)
 
 
 def _is_simpler(slip: Slip, others: list[Slip]) -> bool:
@@ -151,7 +206,15 @@ def slip_cause(slips: tuple[Slip, ...]) -> Cause:
     )
 
 
-def of_entry(case: Case, entry: AnswerEntry, text: Written | None) -> list[Slip]:
+def of_entry(case: Case, entry: AnswerEntry, text: Written | None, most: int = LIST) -> list[Slip]:
+    """What explains one entry.
+
+    Args:
+        case: the states.
+        entry: the entry.
+        text: it as it was written, of a text.
+        most: slips of a text up to which is looked.
+    """
     derived = reference_of(case)
     if derived is None or (text is None and not isinstance(derived, Derivation)):
         slip = terms.turned(text) if text is not None else None
@@ -161,12 +224,9 @@ def of_entry(case: Case, entry: AnswerEntry, text: Written | None) -> list[Slip]
     arguments = case.quantity.arguments
     if text is not None or not isinstance(derived, Derivation):
         assert text is not None
-        elsewhere = None
-        if isinstance(derived, Derivation) and searchable(poly):
-            text = by_equal_numbers(text, derived, poly)
-            elsewhere = apart(case, entry, text, poly)
+        text, elsewhere = _as_read(case, entry, text, derived)
         of = (derived, poly, arguments, case.arguments)
-        found = terms.in_text(entry.label, text, *of, elsewhere)
+        found = terms.in_text(entry.label, text, *of, elsewhere, most)
     else:
         others = [derived.tree(p) for p in derived.polys.flat if len(p) < 200]
         of = (derived, poly, arguments, case.arguments)

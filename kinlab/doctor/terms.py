@@ -14,12 +14,12 @@ from kinlab.arrays import Array
 from kinlab.check.diagnosis import shown_entry
 from kinlab.doctor import regression, search
 from kinlab.doctor.changes import ANY_ZERO
-from kinlab.doctor.confusions.centres import FreeCentres, stands_so
+from kinlab.doctor.confusions.centres import FreeCentres
 from kinlab.doctor.derived import POINTS, Derivation, searchable
 from kinlab.doctor.linkages.looked_up import Reference
 from kinlab.doctor.search import Edit, Repair
 from kinlab.doctor.text.line import Line, Names, brief
-from kinlab.doctor.text.mend import Mended, mended, rewritten, together
+from kinlab.doctor.text.mend import Mended, mended, one_after_another, rewritten, together
 from kinlab.doctor.text.numbers_off import as_meant, beside_rounded, rounded_in
 from kinlab.doctor.text.written import Written
 from kinlab.formulas import tree
@@ -32,6 +32,8 @@ _FEWEST = 8
 """Points at which a text must have a value."""
 _SEED = 11
 """Of the random points at which a text is looked at."""
+_LINES = 2
+"""Ways to read a text in which three slips are looked for one after another."""
 _WAYS = 3
 """Repairs of one part that are tried beside those of the others."""
 _WRITTEN_OUT = 60
@@ -97,6 +99,7 @@ def in_text(
     arguments: tuple[str, ...],
     states: dict[str, Array],
     elsewhere: FreeCentres | None = None,
+    most: int = 3,
 ) -> list[Slip]:
     """Slips that turn the user's text into the derived formula, at random parameters.
 
@@ -110,6 +113,7 @@ def in_text(
         arguments: the quantity's arguments.
         states: the comparison's states.
         elsewhere: the same of an arm with its centres elsewhere, where that is asked.
+        most: how many slips are looked for.
     """
     if not searchable(poly):
         return []
@@ -157,10 +161,12 @@ def in_text(
     if numbers and not isinstance(derived, Derivation):
         tried += [(line, 1) for line in lines]
     tried += [(line, 2) for line in lines]
+    all_ = (*moved, *lines) if most > 2 else ()
     ways: Iterator[tuple[Line, list[Mended]]] = chain(
-        ((line, mended(line, most)) for line, most in tried),
-        ((line, _part_by_part(line)) for line in (*moved, *lines) if not line.numeric),
-        ((line, mended(line)) for line in (*moved, *lines)),
+        ((line, mended(line, count)) for line, count in tried if count <= most),
+        ((line, _part_by_part(line)) for line in all_ if not line.numeric),
+        ((line, mended(line)) for line in all_),
+        ((line, one_after_another(line)) for line in all_[:_LINES] if not line.numeric),
     )
     for line, found in ways:
         if line.numeric:
@@ -168,14 +174,14 @@ def in_text(
         text = elsewhere.here if elsewhere is not None and line in moved else line.text
         if found:
             return [_of_any_zero(line, one, text, here, label) for one in found]
-    if not numbers:
+    if not numbers or most == 1:
         return []
     apart = [
         (at, np.array(np.broadcast_to(tree.evaluate(right, at), np.shape(next(iter(at.values()))))))
         for at in parts(right, own)
     ]
     written, found = beside_rounded(plain[-1], apart)
-    return [_mended(written, one, here) for one in found]
+    return [slip_of(written, one, here) for one in found]
 
 
 def _with_value(text: Written, at: dict[str, Array]) -> dict[str, Array]:
@@ -218,7 +224,7 @@ def _of_any_zero(
     line: Line, one: Mended, written: Written, here: dict[str, Array], label: str
 ) -> Slip:
     """The slip that a repair is; of a potential without what moves nothing but its zero."""
-    whole, kept = _mended(written, one, here), one
+    whole, kept = slip_of(written, one, here), one
     if label.split("[")[0] not in ANY_ZERO or len(one.changes) == 1:
         return whole
     at = dict(line.at)
@@ -232,52 +238,32 @@ def _of_any_zero(
         gap, there = (moved.values(x) - tree.evaluate(line.right, x) for x in (at, elsewhere))
         if np.max(np.abs(gap - there)) <= TOLERANCES.effect_matches * line.scale:
             kept = Mended(rest, text, kept.cost - change.cost)
-    return whole if kept is one else replace(_mended(written, kept, here), values=whole.values)
+    return whole if kept is one else replace(slip_of(written, kept, here), values=whole.values)
 
 
-def in_definitions(
+def lines_apart(
     written: Written,
     derived: Reference,
     poly: Any,
     arguments: tuple[str, ...],
     states: dict[str, Array],
-) -> Iterator[Slip]:
-    """Slips in what the writer's own names stand for: in ``h = m2*l1*l2*sin(q2)``.
+    elsewhere: FreeCentres | None,
+) -> list[tuple[Line, Written]]:
+    """A text beside what it should be at other numbers than the robot's, and as it is told.
 
-    A formula in which the name stands once, or in every term, says what it should be.
+    With its centres elsewhere first, where that is asked; nothing of what is too long.
     """
-    if not written.definitions or not searchable(poly):
-        return
+    if not searchable(poly):
+        return []
     here, names = derived.environment(states), names_for(derived, arguments)
-    right = derived.tree(derived.held(poly, [name for name in derived.loads if np.any(here[name])]))
+    named = [name for name in derived.loads if np.any(here[name])]
+    poly, names = derived.held(poly, named), replace(names, loads=tuple(named))
     at = as_rods(derived.anywhere(_SEED), written, derived)
     forms = [list(form.terms) for form in derived.forms(poly)]
-    target = np.broadcast_to(tree.evaluate(right, at), np.shape(next(iter(at.values()))))
-    line = Line(written, names, at, np.array(target), forms)
-    for name in written.definitions:
-        wanted = _wanted_of(written, name, line)
-        meant = isinstance(derived, Derivation) and stands_so(written, name, derived.arm.words)
-        if wanted is None or meant:
-            continue
-        own = written.definition(name)
-        part = Line(own, names, at, wanted, forms)
-        for one in mended(part, 1):
-            whole = replace(written, symbols={**written.symbols, name: one.text})
-            slip = replace(_mended(own, one, here), values=whole.values(here))
-            yield replace(slip, defined=(name, one.text))
-
-
-def _wanted_of(written: Written, name: str, line: Line) -> Array | None:
-    """What a name would have to be for the formula to be right; None where that is not one."""
-    none, one, two = (
-        replace(written, symbols={**written.symbols, name: str(k)}).values(line.at)
-        for k in (0, 1, 2)
-    )
-    slope = one - none
-    straight = np.max(np.abs(two - one - slope)) <= TOLERANCES.effect_matches * line.scale
-    if not straight or np.min(np.abs(slope)) == 0.0:
-        return None
-    return np.asarray((line.target - none) / slope)
+    moved = [] if elsewhere is None else _elsewhere(elsewhere, named, arguments)
+    told = written if elsewhere is None else elsewhere.here
+    plain = _line_at(written, names, _with_value(written, at), derived.tree(poly), forms)
+    return [*((line, told) for line in moved), (plain, written)]
 
 
 def _no_coincidence(line: Line, one: Mended, right: Node, derived: Reference) -> bool:
@@ -365,7 +351,8 @@ def rods_following(
     return out
 
 
-def _mended(written: Written, found: Mended, here: dict[str, Array]) -> Slip:
+def slip_of(written: Written, found: Mended, here: dict[str, Array]) -> Slip:
+    """A repair of a text as a slip."""
     form = _("{entry}: {slip} ({kind})")
     slips = [
         form.format(entry=shown_entry(written.entry), slip=c.sentence(written.told), kind=_(c.kind))

@@ -55,25 +55,37 @@ def study(line: Line) -> None:
     if line.changes:
         return
     for place in list(line.places):
-        if inside_wave(place) or _is_exponent(place):
-            _angle(line, place)
-            continue
-        node = place.node
-        if isinstance(node, ast.Name):
-            _name(line, place, node.id)
-        elif isinstance(node, ast.Constant):
-            _number(line, place)
-        elif isinstance(node, ast.Call):
-            _call(line, place, node)
-        elif isinstance(node, ast.BinOp):
-            _operation(line, place, node)
-        elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
-            inner = line.source[place.span[0] + 1 : place.span[1]].lstrip()
-            line.instead(place, inner, -place.value, "sign", 1.0)
-        _as_factor(line, place)
-        _as_term(line, place)
+        if _of_place(line, place):
+            _as_factor(line, place)
+            _as_term(line, place)
     _whole_terms(line)
     throughout(line)
+
+
+def study_what_stands(line: Line) -> None:
+    """Notes the changes of what stands there: of nothing that is missing."""
+    for place in list(line.places):
+        _of_place(line, place)
+
+
+def _of_place(line: Line, place: Place) -> bool:
+    """Notes what may stand in a place; whether something may be missing beside it."""
+    if inside_wave(place) or _is_exponent(place):
+        _angle(line, place)
+        return False
+    node = place.node
+    if isinstance(node, ast.Name):
+        _name(line, place, node.id)
+    elif isinstance(node, ast.Constant):
+        _number(line, place)
+    elif isinstance(node, ast.Call):
+        _call(line, place, node)
+    elif isinstance(node, ast.BinOp):
+        _operation(line, place, node)
+    elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
+        inner = line.source[place.span[0] + 1 : place.span[1]].lstrip()
+        line.instead(place, inner, -place.value, "sign", 1.0)
+    return True
 
 
 def _name(line: Line, place: Place, name: str) -> None:

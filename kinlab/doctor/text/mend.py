@@ -11,7 +11,7 @@ from itertools import pairwise, permutations
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.text.alternatives import study
+from kinlab.doctor.text.alternatives import study, study_what_stands
 from kinlab.doctor.text.line import (
     Change,
     Line,
@@ -31,6 +31,8 @@ _BESIDE = 12
 """Changes beside which two of one product are looked for."""
 _LONG = 8
 """Names in a formula from which on three slips are looked for."""
+_PLAIN = 1.1
+"""Cost up to which a change is the first of three that are tried one after another."""
 _EXCHANGED = 0.6
 """What it costs to exchange a whole term beside mending it."""
 _TERMS = {"extra term", "missing term"}
@@ -196,6 +198,44 @@ def _covers(line: Line, effects: Array, wanted: Array, allowed: float) -> list[t
         both = _in_products(line, effects, wanted - effects[first])
         found += [tuple(sorted((int(first), *pair))) for pair in both if first not in pair]
     return _cheapest(line, found)
+
+
+def one_after_another(line: Line) -> list[Mended]:
+    """Three changes of what stands there: a plain one first, and two of the text that it leaves.
+
+    What two of them do may depend on the third: each is tried in the text with the first.
+    """
+    study(line)
+    at = {(c.start, c.end, c.new): k for k, c in enumerate(line.changes)}
+    ranked = sorted(range(len(line.changes)), key=lambda k: line.changes[k].cost)
+    plain = (k for k in ranked if line.changes[k].kind not in _TERMS)
+    allowed = TOLERANCES.effect_matches * line.scale
+    found: list[tuple[int, ...]] = []
+    for k in plain:
+        one = line.changes[k]
+        if one.cost > _PLAIN:
+            break
+        text = rewritten(line.source, (one,))
+        longer = len(one.new) - (one.end - one.start)
+        if text is None or one.everywhere or len(text) != len(line.source) + longer:
+            continue
+        then = replace(line, text=replace(line.text, text=text), places=[], changes=[], rows=[])
+        study_what_stands(then)
+        if not then.rows:
+            continue
+        wanted = then.target - then.root.value
+        for two in _pairs(then, np.array(then.rows), wanted, allowed):
+            spans = [_before(then.changes[n], one, longer) for n in two]
+            before = [at[span] for span in spans if span in at]
+            if len(before) == len(two):
+                found.append((k, *before))
+    return sorted(_checked(line, _cheapest(line, found)), key=lambda m: m.cost)
+
+
+def _before(change: Change, one: Change, longer: int) -> tuple[int, int, str]:
+    """Where a change of a text is in the text before another one, which made it longer."""
+    moved = longer if change.start >= one.start + len(one.new) else 0
+    return change.start - moved, change.end - moved, change.new
 
 
 def together(line: Line, changes: tuple[Change, ...]) -> list[Mended]:

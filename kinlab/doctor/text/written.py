@@ -10,7 +10,7 @@ import ast
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -121,10 +121,7 @@ class Written:
 
     @cached_property
     def _trees(self) -> dict[str, ast.expr]:
-        return {
-            name: ast.parse(text, mode="eval").body
-            for name, text in {"": self.text, **self.symbols}.items()
-        }
+        return {name: _parsed(text) for name, text in {"": self.text, **self.symbols}.items()}
 
     @cached_property
     def literals(self) -> tuple[Literal, ...]:
@@ -215,7 +212,7 @@ class Written:
             (N,); NaN or infinite where the text has no real value.
         """
         count = len(next(iter(at.values())))
-        start = dict(zip(self._used, self._starts, strict=True))
+        start = {} if numbers is None else dict(zip(self._used, self._starts, strict=True))
         known: dict[str, Array] = {}
 
         def name_value(name: str) -> Any:
@@ -224,7 +221,7 @@ class Written:
             return known[name]
 
         def walk(place: str) -> Any:
-            position = start[place]
+            position = start.get(place, 0)
 
             def number(value: float) -> Any:
                 nonlocal position
@@ -279,6 +276,11 @@ class Together:
         parts = [None] * len(self.texts) if numbers is None else np.split(numbers, ends[:-1])
         columns = [text.values(at, own) for text, own in zip(self.texts, parts, strict=True)]
         return np.stack(columns, axis=1).reshape(-1, *self.shape)
+
+
+@lru_cache(maxsize=4096)
+def _parsed(text: str) -> ast.expr:
+    return ast.parse(text, mode="eval").body
 
 
 def _called(trees: Iterable[ast.expr]) -> set[str]:

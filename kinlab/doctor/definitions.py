@@ -1,0 +1,156 @@
+"""Slips in what a writer's own names stand for: ``h = m2*l1*l2*sin(q2)``; alone or with one more.
+
+A definition may be used at several places, and within roots: what each change of it makes of the
+whole formula is worked out, at numbers that are not the robot's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.doctor.terms import Slip, slip_of
+from kinlab.doctor.text.alternatives import study
+from kinlab.doctor.text.line import Change, Line, words_in
+from kinlab.doctor.text.mend import Mended, rewritten
+from kinlab.doctor.text.written import Written
+from kinlab.tolerances import TOLERANCES
+
+_MOST = 300
+"""Changes of one text that are tried with those of another, the likeliest."""
+_FEW = 5
+"""Points at which they are tried first."""
+_AWAY = 0.1
+"""What it costs more where a slip of the formula itself would do."""
+_NAMED = 3
+"""Pairs that are kept."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Part:
+    """A formula, or what a name in it stands for, with what may stand there instead.
+
+    Attributes:
+        name: the name; empty of the formula itself.
+        changes: what may be changed, the likeliest first.
+        texts: the text after each change.
+        values: what it is then, (R, N).
+    """
+
+    name: str
+    changes: Sequence[Change]
+    texts: Sequence[str]
+    values: Array
+
+
+def _part(line: Line, name: str) -> _Part:
+    """A text of a line, and the likeliest changes of it."""
+    own, made = line, set[str]()
+    if name:
+        text = line.text.definition(name)
+        made = line.text.symbols.keys() - text.symbols.keys()
+        own = Line(text, line.names, line.at, text.values(line.at), line.forms)
+    study(own)
+    ranked = sorted(range(len(own.changes)), key=lambda k: own.changes[k].cost)
+    kept: list[tuple[int, str]] = []
+    for k in ranked:
+        new = rewritten(own.source, (own.changes[k],)) if not own.changes[k].everywhere else None
+        kept += [(k, new)] if new is not None and made.isdisjoint(words_in(new)) else []
+    rows = np.array([own.rows[k] for k, _new in kept]).reshape(len(kept), own.count)
+    changes = [own.changes[k] for k, _new in kept]
+    return _Part(name, changes, [new for _k, new in kept], own.root.value + rows)
+
+
+def _put(text: Written, part: str, new: str) -> Written:
+    """A text with another formula, or another definition of one of its names."""
+    if not part:
+        return replace(text, text=new)
+    return replace(text, symbols={**text.symbols, part: new})
+
+
+def _whole(text: Written, name: str, values: Array, at: dict[str, Array]) -> Array:
+    """What a formula is where a name in it has other values, (R, N) as these."""
+    rest = {own: meant for own, meant in text.symbols.items() if own != name}
+    every = {n: np.tile(x, len(values)) for n, x in at.items()} | {name: values.ravel()}
+    found: Array = replace(text, symbols=rest).values(every).reshape(values.shape)
+    return found
+
+
+class Definitions:
+    """A formula with names of its writer's own, beside what it should be.
+
+    Args:
+        line: the formula.
+        told: the same as it is told.
+        here: values of the robot's names at the states of the comparison.
+        names: those of the writer's names that may be wrong.
+    """
+
+    def __init__(
+        self, line: Line, told: Written, here: dict[str, Array], names: Sequence[str]
+    ) -> None:
+        self.line, self.told, self.here, self.names = line, told, here, names
+        self.allowed = TOLERANCES.effect_matches * line.scale
+
+    @cached_property
+    def parts(self) -> list[_Part]:
+        """What may be changed in the definitions."""
+        return [_part(self.line, name) for name in self.names]
+
+    def single(self) -> Iterator[Slip]:
+        """Changes of one definition with which the formula is right."""
+        for part in self.parts:
+            whole = _whole(self.line.text, part.name, part.values, dict(self.line.at))
+            for k in self._right(whole, self.line.target):
+                yield self._slip(part, int(k), _put(self.told, part.name, part.texts[k]))
+
+    def with_one_more(self) -> list[tuple[Slip, ...]]:
+        """Changes of a definition, and perhaps of another one, beside which one more is right.
+
+        The likeliest first; what is to be changed in the formula itself is left out.
+        """
+        few = {name: x[:_FEW] for name, x in self.line.at.items()}
+        found: list[tuple[float, int, tuple[Slip, ...]]] = []
+        formula = _part(self.line, "")
+        for n, part in enumerate(self.parts):
+            values = part.values[:_MOST, :_FEW]
+            for other in (formula, *self.parts[n + 1 :]):
+                for k, new in enumerate(other.texts[:_MOST]):
+                    text = _put(self.line.text, other.name, new)
+                    whole = _whole(text, part.name, values, few)
+                    for j in map(int, self._right(whole, self.line.target[:_FEW])):
+                        both = self._both(part, j, other, k)
+                        cost = part.changes[j].cost + other.changes[k].cost
+                        cost += _AWAY * bool(other.name)
+                        found += [(cost, len(found), both)] if both else []
+        return [both for _cost, _turn, both in sorted(found, key=lambda x: x[:2])[:_NAMED]]
+
+    def _right(self, whole: Array, target: Array) -> Any:
+        """Which of several answers are what they should be."""
+        with np.errstate(invalid="ignore"):
+            return np.flatnonzero((np.abs(whole - target) <= self.allowed).all(axis=1))
+
+    def _both(self, part: _Part, j: int, other: _Part, k: int) -> tuple[Slip, ...]:
+        """The slips of two changes that are right at every point; none of others."""
+        if part.name in words_in(other.texts[k]) and other.name in words_in(part.texts[j]):
+            return ()
+        new = _put(_put(self.line.text, other.name, other.texts[k]), part.name, part.texts[j])
+        if not len(self._right(new.values(self.line.at)[None], self.line.target)):
+            return ()
+        changed = _put(self.told, part.name, part.texts[j])
+        slips: tuple[Slip, ...] = (self._slip(part, j, changed),)
+        if other.name:
+            slips += (self._slip(other, k, _put(changed, other.name, other.texts[k])),)
+        return slips
+
+    def _slip(self, part: _Part, k: int, whole: Written) -> Slip:
+        """A change of a definition as a slip, after which the formula is another."""
+        own, new = self.told.definition(part.name), part.texts[k]
+        found = Mended((part.changes[k],), new, part.changes[k].cost)
+        slip = replace(slip_of(own, found, self.here), values=whole.values(self.here))
+        return replace(slip, defined=(part.name, new))
