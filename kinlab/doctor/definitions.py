@@ -6,7 +6,7 @@ whole formula is worked out, at numbers that are not the robot's.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -73,12 +73,24 @@ def _put(text: Written, part: str, new: str) -> Written:
     return replace(text, symbols={**text.symbols, part: new})
 
 
-def _whole(text: Written, name: str, values: Array, at: dict[str, Array]) -> Array:
-    """What a formula is where a name in it has other values, (R, N) as these."""
-    rest = {own: meant for own, meant in text.symbols.items() if own != name}
-    every = {n: np.tile(x, len(values)) for n, x in at.items()} | {name: values.ravel()}
-    found: Array = replace(text, symbols=rest).values(every).reshape(values.shape)
-    return found
+class _Instead:
+    """A formula in which a name has other values.
+
+    Args:
+        name: the name.
+        values: what it is instead, (R, N).
+        at: values of the robot's names, (N,) each.
+    """
+
+    def __init__(self, name: str, values: Array, at: Mapping[str, Array]) -> None:
+        self.name, self.shape = name, values.shape
+        self.at = {n: np.tile(x, len(values)) for n, x in at.items()} | {name: values.ravel()}
+
+    def of(self, text: Written) -> Array:
+        """What a text is then, (R, N)."""
+        rest = {name: meant for name, meant in text.symbols.items() if name != self.name}
+        found: Array = replace(text, symbols=rest).values(self.at).reshape(self.shape)
+        return found
 
 
 class Definitions:
@@ -105,7 +117,7 @@ class Definitions:
     def single(self) -> Iterator[Slip]:
         """Changes of one definition with which the formula is right."""
         for part in self.parts:
-            whole = _whole(self.line.text, part.name, part.values, dict(self.line.at))
+            whole = _Instead(part.name, part.values, self.line.at).of(self.line.text)
             for k in self._right(whole, self.line.target):
                 yield self._slip(part, int(k), _put(self.told, part.name, part.texts[k]))
 
@@ -118,11 +130,10 @@ class Definitions:
         found: list[tuple[float, int, tuple[Slip, ...]]] = []
         formula = _part(self.line, "")
         for n, part in enumerate(self.parts):
-            values = part.values[:_MOST, :_FEW]
+            instead = _Instead(part.name, part.values[:_MOST, :_FEW], few)
             for other in (formula, *self.parts[n + 1 :]):
                 for k, new in enumerate(other.texts[:_MOST]):
-                    text = _put(self.line.text, other.name, new)
-                    whole = _whole(text, part.name, values, few)
+                    whole = instead.of(_put(self.line.text, other.name, new))
                     for j in map(int, self._right(whole, self.line.target[:_FEW])):
                         both = self._both(part, j, other, k)
                         cost = part.changes[j].cost + other.changes[k].cost
