@@ -41,6 +41,8 @@ _OF_AN_ANGLE = 0.1
 """What a factor costs more that is an angle: of these sines and cosines are factors."""
 _MIXED = 0.96
 """Cost of a lost 2 in the mixed term of a square: a length for a distance is as soon mistaken."""
+_BESIDE_A_PART = 1.08
+"""What it is to forget all of one beside a part of another: ``m2/2 + m3``."""
 _DIVIDED = 1.07
 """Cost of a divisor that is lost."""
 _SAME_NUMBER = 0.06
@@ -267,6 +269,7 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
         yield from _two_factors(here, scope)
     if operated:
         yield from _masses_behind(here, scope)
+        yield from _beside_a_part(here, scope)
     for text, scalar in scope.pieces_here(()).items():
         if text == own or isinstance(scalar, ast.BinOp | ast.UnaryOp):
             continue
@@ -302,6 +305,28 @@ def _masses_behind(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
         new, count = ast.BinOp(new, ast.Add(), ast.Name(name, ast.Load())), count + 1
     if count + len(given) > _FEW_MASSES:
         yield here.instead(new, "missing term", 1.08)
+
+
+def _beside_a_part(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """All of one beside a part of another: ``m2/2 + m3`` for ``m2/2``, in a product."""
+    node = here.node
+    if not isinstance(node, ast.BinOp) or not isinstance(node.op, ast.Mult | ast.Div):
+        return
+    numbers = [x for x in (node.left, node.right) if isinstance(x, ast.Constant)]
+    own = [x for x in (node.left, node.right) if isinstance(x, ENTRIES)]
+    if (
+        len(numbers) != 1
+        or len(own) != 1
+        or (isinstance(node.op, ast.Div) and numbers[0] is node.left)
+    ):
+        return
+    alike = own[0].value if isinstance(own[0], ast.Subscript) else own[0]
+    text, letters = ast.unparse(own[0]), ast.unparse(alike).rstrip("0123456789")
+    for other, scalar in scope.pieces_here(()).items():
+        beside = scalar.value if isinstance(scalar, ast.Subscript) else scalar
+        if other != text and ast.unparse(beside).rstrip("0123456789") == letters:
+            new = ast.BinOp(node, ast.Add(), scalar)
+            yield here.instead(new, "missing term", _BESIDE_A_PART)
 
 
 def _two_factors(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

@@ -50,6 +50,8 @@ _ALONG = ("transpose", "moveaxis")
 """What is given numbers of axes."""
 _WRITTEN = 1.15
 """Cost of another index of where a value is written: slips are made rather where it is read."""
+_BOTH = 1.14
+"""What an inverse's transpose for a transpose is far-fetched."""
 _SUMMED = 0.06
 """What a sign or factor costs more in a sum of names, each of which has a line of its own."""
 _ROWS = 6
@@ -200,6 +202,8 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Progra
                 for name in ("inv", "pinv"):
                     call = ast.Call(ast.Attribute(linear, name, ast.Load()), [node.value], [])
                     yield here.instead(call, "inverse", 1.12)
+                    turned = ast.Attribute(call, "T", ast.Load())
+                    yield here.instead(turned, "inverse", _BOTH)
         else:
             yield from of_attribute(here, scope, observed)
     elif isinstance(node, ast.Constant):

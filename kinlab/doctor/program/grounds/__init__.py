@@ -9,6 +9,7 @@ module            what it holds
 ``evidence``      What speaks against an edit: that what it changes is already what a textbook has
 ``helpers``       Functions of a program that are what textbooks have, of whatever they are given
 ``labels``        What the numbers of a program are called, and at which place they stand
+``lacking``       Products of several factors that a number lacks to be one of a textbook's
 ``products``      Products that may be missing in a sum, as far as dimensions tell
 ``scaled``        Another arm, on which what is one by the numbers alone is two things
 ``suspects``      Statements that are wrong by what they are made of

@@ -36,13 +36,13 @@ def missing_products(
         scopes: those of its parts.
         known: their dimensions.
     """
-    for here, scope in standing(trial, scopes, _is_whole):
+    for here, scope in standing(trial, scopes, is_whole):
         size = known.of(here.node)
         if size and observed.shape(here.node) == ():
             yield from _missing(here, scope, known, size)
 
 
-def _is_whole(here: Here) -> bool:
+def is_whole(here: Here) -> bool:
     """Whether an expression is all that is set, or an entry of it."""
     whole = isinstance(here.parent, ast.Assign | ast.AugAssign | ast.Return | ast.List | ast.Tuple)
     return whole and not isinstance(here.node, ast.Constant | ast.List | ast.Tuple)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -11,11 +11,13 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.glossary.textbook import Glossary
 from kinlab.doctor.program.edits.every import edits
 from kinlab.doctor.program.edits.numbers.as_the_arm import as_it_is, of_table
 from kinlab.doctor.program.edits.numbers.own_numbers import of_own_numbers
 from kinlab.doctor.program.edits.scope import Scope
 from kinlab.doctor.program.grounds.dimensions import LIKE, Dimensions
+from kinlab.doctor.program.grounds.lacking import lacking_terms
 from kinlab.doctor.program.grounds.products import missing_products
 from kinlab.doctor.program.grounds.scaled import is_own, own_rows
 from kinlab.doctor.program.grounds.terms import missing_terms
@@ -31,13 +33,19 @@ _ROW = 3
 
 
 def chosen(
-    asked: Asked, observed: Observed, dimensions: Dimensions, below: float, most: int
+    asked: Asked,
+    observed: Observed,
+    known: Sequence[Glossary],
+    dimensions: Dimensions,
+    below: float,
+    most: int,
 ) -> list[ProgramEdit]:
     """The likeliest edits, with what their dimensions add to what they cost.
 
     Args:
         asked: the program, and what it should answer.
         observed: what its expressions were.
+        known: the textbook's things at the states at which it is watched.
         dimensions: of its expressions.
         below: what an edit costs at most.
         most: how many.
@@ -49,6 +57,7 @@ def chosen(
     every += of_own_numbers(trial, observed, robot, *map(asked.watched_of, ("q", "a")))
     every += missing_products(trial, observed, scopes, dimensions)
     every += missing_terms(trial, observed, scopes, dimensions)
+    every += lacking_terms(trial, observed, scopes, known)
     sure = as_it_is(trial, observed, robot)
     mirrors, rows = _mirroring(asked, observed), own_rows(robot)
     every = [

@@ -179,7 +179,7 @@ class LineSearch:
         limit = self.most if self.stand else _ALONE
         with quietly():
             most = _WEIGHED // 3 if self.stand else _WEIGHED
-            every = chosen(self.asked, self.observed, self.dimensions, below, most)
+            every = chosen(self.asked, self.observed, self.known, self.dimensions, below, most)
             tried = self._in_turn(sorted(every, key=self._dear))
             variants = Variants(self.trial, tried)
             for turn, edit in enumerate(tried):

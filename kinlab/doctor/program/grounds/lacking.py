@@ -1,0 +1,146 @@
+"""Products of several factors that a number lacks to be one of a textbook's: ``2*m2*l1*lc2*c2``.
+
+What is missing is known where a statement's value is that less than something that the arm has at
+every state: which product of the numbers at hand it is, is looked up.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from functools import reduce
+from itertools import combinations_with_replacement
+from typing import Any
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.doctor.bytecode.syntax import copied, names, nodes
+from kinlab.doctor.glossary.textbook import Glossary
+from kinlab.doctor.program.edits.scope import Scope, standing, statement_of, summands
+from kinlab.doctor.program.grounds.products import is_whole
+from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.places import ANGLES, ProgramEdit, called, number
+from kinlab.doctor.program.trial import Trial
+from kinlab.tolerances import TOLERANCES
+
+_ATOMS = 18
+"""Numbers of which a product may be, those that stand most often."""
+_FACTORS = 4
+"""Factors of a product."""
+_FRONTS = (1.0, 2.0, 0.5)
+"""What may stand in front of it."""
+_MOST = 4
+"""Products that are tried in one place."""
+_COST, _LONGER = 1.0, 0.02
+"""What one is far-fetched of two factors, and what each further one adds."""
+
+
+def lacking_terms(
+    trial: Trial, observed: Observed, scopes: Sequence[Scope], known: Sequence[Glossary]
+) -> Iterator[ProgramEdit]:
+    """Products with which a number would be one of a textbook's.
+
+    Args:
+        trial: a program.
+        observed: its expressions.
+        scopes: those of its parts.
+        known: the textbook's things at the states at which it was watched.
+    """
+    things = _scalars(known)
+    if len(known) < 2 or not len(things):
+        return
+    tables: dict[int, _Products] = {}
+    for here, scope in standing(trial, scopes, is_whole):
+        value = _firsts(observed, here.node, len(known))
+        if value is None or _is_among(value, things):
+            continue
+        if here.part not in tables:
+            tables[here.part] = _Products(trial.trees[here.part], observed, len(known))
+        own = {ast.unparse(one) for one in summands(here.node)}
+        line = statement_of(here.above).lineno
+        for op, term, factors in tables[here.part].making(things - value)[:_MOST]:
+            late = any(scope.set_at.get(name, 0) > line for name in names(term))
+            if not late and ast.unparse(term) not in own:
+                new = ast.BinOp(here.node, op, term)
+                yield here.instead(new, "missing term", _COST + _LONGER * (factors - 2))
+
+
+def _scalars(known: Sequence[Glossary]) -> Array:
+    """The numbers that the textbook has at the states, (G, S)."""
+    found = [one.things.get((), ([], np.empty(0)))[1] for one in known]
+    if not found or len({len(x) for x in found}) > 1:
+        return np.empty((0, 0))
+    return np.unique(np.stack(found, axis=1), axis=0)
+
+
+def _firsts(observed: Observed, node: ast.AST, states: int) -> Array | None:
+    """What a number is when it is first met at each state; None where that is not known."""
+    seen = observed.of(node)
+    if seen is None or seen.shape != () or seen.count % states or len(seen.values) < seen.count:
+        return None
+    found = np.array(seen.values[:: seen.count // states], dtype=float)
+    return found if np.isfinite(found).all() else None
+
+
+def _is_among(value: Array, things: Array) -> bool:
+    gap = np.abs(np.abs(things) - np.abs(value)).max(axis=1)
+    return bool((gap <= TOLERANCES.same_relation * np.max(np.abs(value))).any())
+
+
+class _Products:
+    """All products of the numbers of one part, by their size at the first state."""
+
+    def __init__(self, tree: ast.AST, observed: Observed, states: int) -> None:
+        met: Counter[str] = Counter()
+        self.atoms: dict[str, tuple[ast.expr, Array]] = {}
+        for node in nodes(tree):
+            if not isinstance(node, ast.expr) or not _may_be_factor(node):
+                continue
+            value, text = _firsts(observed, node, states), ast.unparse(node)
+            if value is not None and value.all():
+                met[text] += 1
+                self.atoms.setdefault(text, (node, value))
+        self.texts = [text for text, _count in met.most_common(_ATOMS)]
+        values = np.array([self.atoms[text][1] for text in self.texts]).reshape(-1, states)
+        sizes, signs = np.log(np.abs(values)), np.sign(values)
+        self.ways: list[tuple[int, ...]] = []
+        for count in range(2, _FACTORS + 1):
+            self.ways += combinations_with_replacement(range(len(self.texts)), count)
+        self.sizes = np.array([sizes[[*way]].sum(axis=0) for way in self.ways]).reshape(-1, states)
+        self.signs = np.array([signs[[*way]].prod(axis=0) for way in self.ways]).reshape(-1, states)
+        self.order = np.argsort(self.sizes[:, 0], kind="stable")
+
+    def making(self, wanted: Array) -> list[tuple[ast.operator, ast.expr, int]]:
+        """The products that are one of the numbers wanted, (G, S), or less; the shortest first."""
+        moving = np.ptp(wanted, axis=1) > TOLERANCES.same_relation * np.abs(wanted).max(axis=1)
+        wanted = wanted[moving & wanted.all(axis=1)]
+        found: dict[tuple[int, int, float], Any] = {}
+        line = self.sizes[self.order, 0]
+        near = TOLERANCES.same_relation
+        for front in _FRONTS:
+            sizes = np.log(np.abs(wanted) / front)
+            low = np.searchsorted(line, sizes[:, 0] - near)
+            high = np.searchsorted(line, sizes[:, 0] + near)
+            for g in np.flatnonzero(high > low):
+                for k in map(int, self.order[low[g] : high[g]]):
+                    signs = np.sign(wanted[g]) * self.signs[k]
+                    if np.abs(self.sizes[k] - sizes[g]).max() <= near and np.ptp(signs) == 0:
+                        op = ast.Add() if signs[0] > 0 else ast.Sub()
+                        found[len(self.ways[k]), k, front] = op
+        return [(op, self._term(k, front), n) for (n, k, front), op in sorted(found.items())]
+
+    def _term(self, k: int, front: float) -> ast.expr:
+        factors = [copied(self.atoms[self.texts[n]][0]) for n in self.ways[k]]
+        factors = [number(2 if front == 2.0 else front)] * (front != 1.0) + factors
+        return reduce(lambda one, other: ast.BinOp(one, ast.Mult(), other), factors)
+
+
+def _may_be_factor(node: ast.expr) -> bool:
+    """Whether it is a name, an entry, an attribute, or a sine or cosine, that is read."""
+    if isinstance(node, ast.Call):
+        return called(node) in ANGLES
+    return isinstance(node, ast.Name | ast.Subscript | ast.Attribute) and isinstance(
+        node.ctx, ast.Load
+    )
