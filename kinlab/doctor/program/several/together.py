@@ -22,6 +22,7 @@ from kinlab.doctor.program.lanes.run import InLanes
 from kinlab.doctor.program.search.repair import LineSearch
 from kinlab.doctor.program.several.effects import Chosen, Effects
 from kinlab.doctor.program.trial import NoProgramError
+from kinlab.doctor.text.pairs import pairs_adding_up
 
 _BLOCK = 120
 """Edits of which each is run with each of as many others at a time."""
@@ -65,7 +66,7 @@ _NUMBERS = 2
 """Numbers of answers that amount to one operation."""
 _TO_READ = 200
 """Work of finding where the tool is for an answer's joint positions."""
-_FOR_THREES = 3
+_FOR_THREES = 2
 """Of the work the part that pairs leave to threes."""
 _NONE = -1
 """In place of an edit's number."""
@@ -299,12 +300,13 @@ class TriedTogether:
     def threes(self) -> list[Chosen]:
         """Any three edits that make the program right as far as their pairs tell, likeliest first.
 
-        Of three, two act on one another and the third beside them; or each two do, and not all.
+        Of three, two act on one another and the third beside them; or one acts on both others; or
+        each two do, and not all.
         """
         if not self.usable or not self.chosen:
             return []
         with np.errstate(all="ignore"):
-            ways = (self._beside_pairs(), self._of_pairs())
+            ways = (self._beside_pairs(), self._beside_one(), self._of_pairs())
             found = {three for way in ways for three in islice(way, _TRIED)}
         ranked = sorted(found, key=self.known.cost)
         right, _rows = self._right(np.array(ranked)) if ranked else ((), None)
@@ -376,6 +378,16 @@ class TriedTogether:
                 k = int(self.sound[n])
                 if k not in (i, j):
                     yield tuple(sorted((i, j, k)))
+
+    def _beside_one(self) -> Iterator[Chosen]:
+        """Two edits whose effects add up once a third stands, beside which both were tried."""
+        size = len(self.weights)
+        for first in self.sound[self.sound < self.three][:_BLOCK].tolist():
+            others = np.flatnonzero(np.isfinite(self.both[first, :, 0]))
+            alone = self.known.rows[first, :size]
+            rows, goal = self.both[first, others] - alone, self.known.goal[:size] - alone
+            for i, j in pairs_adding_up(rows, goal, self.known.near) if len(others) > 1 else ():
+                yield tuple(sorted((first, int(others[i]), int(others[j]))))
 
     def _of_pairs(self) -> Iterator[Chosen]:
         """Three of the likeliest of which each two may act on one another."""
