@@ -26,6 +26,8 @@ _MOST, _FEW = 40, 12
 """Terms that may be missing in one place; of a dimension that is not known."""
 _IDLE, _USED = 1.06, 1.17
 """What a term is far-fetched with a name that is used nowhere else, and without one."""
+_CROSSED = 1.1
+"""The same of a product of two vectors with such a name, of which no dimension is known."""
 _NEXT = 0.98
 """What one is with which each of the arm's links has its own."""
 _OF_SEVERAL, _OF_IDLE, _FITTING = 1.0, 1.05, 1.08
@@ -100,8 +102,9 @@ def _of_dimension(
         if (told is None and not idle) or ast.unparse(term) in own:
             continue
         if told is None or told <= TOLERANCES.tried_further:
-            sure = told is not None or zeros
-            found.append((_IDLE if idle and sure else _USED, term))
+            sure, crossed = told is not None or zeros, isinstance(term, ast.Call)
+            cost = _IDLE if idle and sure else _CROSSED if idle and crossed else _USED
+            found.append((cost, term))
     found.sort(key=lambda one: one[0])
     for cost, term in found[: _MOST if size is not None or zeros else _FEW]:
         yield here.instead(ast.BinOp(here.node, ast.Add(), term), "missing term", cost)
@@ -197,7 +200,9 @@ def _terms(scope: Scope, shape: Shape) -> Iterator[ast.expr]:
     numbers = [one for text, one in scope.simple(()) if text not in scope.counters]
     numbers.sort(key=lambda one: not scope.uses_idle(one))
     rows = {ast.unparse(one.value) for one in numbers if isinstance(one, ast.Subscript)}
-    vectors = [one for text, one in scope.simple(shape) if text not in rows][:_VECTORS]
+    idle = scope.unused  # what is set and used nowhere is meant as a whole
+    vectors = [one for text, one in scope.simple(shape) if text in idle or text not in rows]
+    vectors = sorted(vectors, key=lambda one: not scope.uses_idle(one))[:_VECTORS]
     typed = [one for one in pieces.values() if _is_typed(one)][:_MADE]
     for vector in (*vectors, *typed):
         for scalar in numbers[:_SCALARS]:
