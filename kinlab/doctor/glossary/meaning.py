@@ -104,6 +104,7 @@ PHRASES = {
     "Jw": N_("the angular rows of the Jacobian"),
     "Jv_column": N_("the linear part of {column} of the Jacobian"),
     "J_column": N_("{column} of the Jacobian"),
+    "J_entry": N_("entry ({of}) of the Jacobian"),
     "Jvc": N_("the linear Jacobian of the centre of mass of {link}"),
     "Jwc": N_("the angular Jacobian of {link}"),
     "Jvc_column": N_("column {of} of the linear Jacobian of the centre of mass of {link}"),

@@ -210,6 +210,8 @@ class _Gathered:
         self.put("Jw", J[3:])
         self.each("Jv_column", J[:3].T, rank=1)
         self.each("J_column", J.T)
+        for (row, column), x in np.ndenumerate(J):
+            self.put("J_entry", x, of=f"{row + 1}, {column + 1}", rank=2)
         task = J[[0, 1, 5]][:n] if self.plane and n in (2, 3) else J
         if self.plane:
             self.put("J", J[[0, 1, 5]])

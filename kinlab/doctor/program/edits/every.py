@@ -50,6 +50,8 @@ _ALONG = ("transpose", "moveaxis")
 """What is given numbers of axes."""
 _WRITTEN = 1.15
 """Cost of another index of where a value is written: slips are made rather where it is read."""
+_GATHERED = 1.0
+"""What it is to set anew in a loop what was begun before it."""
 _BOTH = 1.14
 """What an inverse's transpose for a transpose is far-fetched."""
 _SUMMED = 0.06
@@ -248,6 +250,7 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Program
             node.value, ast.Constant
         ):
             cost = 1.08 if _overwrites(here, target) else 1.15
+            cost = _GATHERED if _is_begun(here, target) else cost
             yield here.instead(ast.AugAssign(target, ast.Add(), node.value), "sum", cost)
         if isinstance(target, ast.Tuple):
             if len(target.elts) == _TWIST:
@@ -284,6 +287,17 @@ def _overwrites(here: Here, target: ast.expr) -> bool:
     assert isinstance(target, ast.Name)
     every = (one for one in nodes(here.above[0]) if isinstance(one, ast.Assign))
     return sum(target.id in names(to) for one in every for to in one.targets) > 1
+
+
+def _is_begun(here: Here, target: ast.expr) -> bool:
+    """Whether what a loop sets anew, and not from itself, is begun before it: to be added to."""
+    loops = [one for one in here.above if isinstance(one, ast.For | ast.While)]
+    if not loops or not isinstance(target, ast.Name) or target.id in names(here.node.value):
+        return False
+    inside = {id(one) for one in nodes(loops[-1])}
+    before = (one for one in nodes(here.above[0]) if isinstance(one, ast.Assign))
+    outside = [one for one in before if id(one) not in inside and one.lineno < here.node.lineno]
+    return any(target.id in names(to) for one in outside for to in one.targets)
 
 
 def _in_degrees(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:

@@ -11,7 +11,7 @@ from kinlab.doctor.program.edits.scope import Scope, Turned
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, called, follow, number
 
-_ANGLES = 1.07
+_ANGLES = 1.13
 """Cost of the joint before in every angle of a statement."""
 _MOST = 6
 """Names of one statement of which any two may be exchanged."""

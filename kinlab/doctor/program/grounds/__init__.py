@@ -4,6 +4,7 @@
 module            what it holds
 ================  =================================================================================
 ``apart``         An arm whose numbers have nothing to do with one another
+``as_called``     A link's length where a program has its centre's distance by name
 ``called``        What the numbers of an arm are called
 ``dimensions``    The dimensions of a program's expressions: nobody adds a length to a moment
 ``evidence``      What speaks against an edit: that what it changes is already what a textbook has

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 _CALLED = (
-    (re.compile(r"(lc|lg|com|cm|cen|rc)|(c|s)[xyz]?$"), ("centre",)),
+    (re.compile(r"(lc|lg|ac|com|cm|cen|rc)|(c|s)[xyz]?$"), ("centre",)),
     (re.compile(r"(i|j)[xyz]{0,2}[cg]?$|inert|moment|tens"), ("moment",)),
     (re.compile(r"m$|mass"), ("mass",)),
     (re.compile(r"al|twist"), ("twist",)),

@@ -16,6 +16,7 @@ from kinlab.doctor.program.edits.every import edits
 from kinlab.doctor.program.edits.numbers.as_the_arm import as_it_is, of_table
 from kinlab.doctor.program.edits.numbers.own_numbers import of_own_numbers
 from kinlab.doctor.program.edits.scope import Scope
+from kinlab.doctor.program.grounds.as_called import of_centres
 from kinlab.doctor.program.grounds.dimensions import LIKE, Dimensions
 from kinlab.doctor.program.grounds.lacking import lacking_terms
 from kinlab.doctor.program.grounds.products import missing_products
@@ -26,7 +27,7 @@ from kinlab.doctor.program.places import DATA, ProgramEdit
 from kinlab.doctor.program.search.asked import Asked
 from kinlab.doctor.program.trial import Trial
 
-_MADE = 0.97
+_MADE = 0.86
 """Cost of an exchange after which a row is the robot's."""
 _ROW = 3
 """Numbers of a row that tell whose it is."""
@@ -54,6 +55,7 @@ def chosen(
     scopes = [Scope(trial, observed, k) for k in range(len(trial.trees))]
     every = edits(trial, observed, scopes)
     every += of_table(trial, observed, robot)
+    every += of_centres(trial, observed, robot)
     every += of_own_numbers(trial, observed, robot, *map(asked.watched_of, ("q", "a")))
     every += missing_products(trial, observed, scopes, dimensions)
     every += missing_terms(trial, observed, scopes, dimensions)

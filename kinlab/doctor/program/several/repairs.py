@@ -34,6 +34,9 @@ _ALIKE = 0.15
 """Cost beyond the first's of repairs that nothing else tells from it."""
 _TIED, _TIED_BESIDE = 0.08, 0.02
 """Of these, costs that are one; where the others are the same edits."""
+_NEXT, _STATEMENT = 0.07, 0.05
+"""What an edit may cost more that leaves more of the program as a textbook has it: at most, and
+for each statement."""
 _NAMED = 3
 """Repairs that are kept."""
 _STEPS = 3
@@ -200,7 +203,7 @@ class _Several:
     ) -> list[ProgramRepair]:
         """The first repair with each of its edits the likeliest beside the others.
 
-        But what leaves less of the program as a textbook has it is no likelier.
+        What leaves more of the program as a textbook has it is likelier.
         """
         if not found or turns == _TURNS:
             return found
@@ -213,12 +216,13 @@ class _Several:
                 with changed(search.trial, others):
                     here = _beside(search, others)
                     cost = here.likely(edit)
-                    better = here.singles(cost)[:1]
-                    better = [one for one in better if here.likely(one.edits[-1]) < cost]
+                    better = here.singles(cost + _NEXT)[:1]
             except NoProgramError:
                 continue
-            if better and search.left_right((*others, better[0].edits[-1])) >= right:
-                return self._settled(search, better, turns + 1)
+            for one in better:
+                more = search.left_right((*others, one.edits[-1])) - right
+                if here.likely(one.edits[-1]) < cost + _STATEMENT * more:
+                    return self._settled(search, better, turns + 1)
         return found
 
 
