@@ -122,6 +122,9 @@ class Tolerances:
     may_be_step: float = 1e-2
     """The largest number of a program that may be the step of a difference."""
 
+    is_small: float = 1e-3
+    """The largest number of a program that may be where an iteration stops, or a damping."""
+
     is_step: float = 1e-4
     """The largest number of a program that is rather a step than anything of an arm."""
 

@@ -28,6 +28,8 @@ Stage = Literal["robot", "arguments", "engine", "answer"]
 Arguments = dict[str, Array]
 Engine = Callable[[Robot, Arguments], Array]
 
+ANGLES = ("fivebar_angles", "fivebar_leg_angles", "planar_angle")
+"""Quantities that are angles, of which a whole turn more is the same."""
 ANY_ZERO = ("potential_energy", "lagrangian")
 """Quantities of which a constant more or less is no slip."""
 

@@ -44,8 +44,13 @@ def excused(case: Case, engine: Array, written: dict[str, Written]) -> tuple[Cas
     odd = verdicts.unusual(case, engine, 0.0 if written else TOLERANCES.finite_differences)
     if odd is not None:
         return case, _with_numbers(odd, case, engine, written)
-    if not written and (cut := verdicts.answers_rounded(case, engine)) is not None:
-        return case, cut
+    case, turned = (case, ()) if written else verdicts.without_turns(case, engine)
+    if turned:
+        case, found = excused(case, engine, written)
+        return case, found and replace(found, remarks=(*turned, *found.remarks))
+    for rounded in (verdicts.answers_rounded, verdicts.answers_to_digits):
+        if not written and (cut := rounded(case, engine)) is not None:
+            return case, cut
     if not written and (digits := verdicts.by_differences(case, engine)) is not None:
         return case, digits
     for said_of_all in rounding.roundings(case, engine, not written):

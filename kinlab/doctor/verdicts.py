@@ -13,7 +13,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes, relative_errors
 from kinlab.check.quantities.fivebar import FIVEBAR
-from kinlab.doctor.changes import AnswerEntry, Case, entries, table_of
+from kinlab.doctor.changes import ANGLES, AnswerEntry, Case, entries, table_of
 from kinlab.doctor.derived import LETTERS, WRENCH, Derivation, derivation_of, searchable
 from kinlab.doctor.linkages import five_bar
 from kinlab.doctor.linkages.looked_up import Reference
@@ -44,8 +44,6 @@ _COORDINATES = 6
 """Of a twist."""
 _DIGITS_LEFT = 100.0
 """Units of the last decimal that rounded answers reach at least."""
-_ANGLES = ("fivebar_angles", "fivebar_leg_angles", "planar_angle")
-"""Quantities that are angles, of which a whole turn more is the same."""
 ENERGIES = ("potential_energy", "lagrangian", "link_potential_energies")
 
 
@@ -132,11 +130,10 @@ def unusual(case: Case, engine: Array, slack: float = 0.0) -> Excuse | None:
                 "sums over qd_j qd_k are the same"
             )
             return Excuse("unusual", (said,))
-    if case.quantity.name in _ANGLES:
-        turns = np.rint((hand - engine) / (2 * np.pi))
-        if turns.any() and same_values(hand - 2 * np.pi * turns, engine, engine, slack):
-            said = _("the angle differs by whole turns (2*pi) in places: it is the same angle")
-            return Excuse("unusual", (said,))
+    if case.quantity.name in ANGLES:
+        turned, said_of_turns = without_turns(case, engine)
+        if said_of_turns and same_values(turned.hand, engine, engine, slack):
+            return Excuse("unusual", said_of_turns)
     if not any_other(case) or (slack and same_values(hand, engine, engine, slack)):
         return None  # what is the engine's but for noise is no other form
     mine, theirs = essential(case, hand), essential(case, engine)
@@ -309,6 +306,38 @@ def answers_rounded(case: Case, engine: Array) -> Excuse | None:
     return None
 
 
+def answers_to_digits(case: Case, engine: Array) -> Excuse | None:
+    """A function whose answers are the engine's, rounded to so many significant digits."""
+    if case.hand.shape != engine.shape or not np.isfinite(case.hand).all():
+        return None
+    sizes = np.abs(engine)
+    places = np.floor(np.log10(np.where(sizes > 0.0, sizes, 1.0)))
+    for digits in range(2, 9):
+        units = 10.0 ** (places - digits + 1)
+        off = np.abs(np.round(case.hand / units) * units - case.hand)
+        if np.all(off <= TOLERANCES.same_number * sizes):
+            near = np.abs(case.hand - engine) <= 0.5 * units * (1 + TOLERANCES.same_relation)
+            said = _("its answers are rounded to {digits} significant digits")
+            return Excuse("rounded", (said.format(digits=digits),)) if np.all(near) else None
+    return None
+
+
+def without_turns(case: Case, engine: Array) -> tuple[Case, tuple[str, ...]]:
+    """Answers without the whole turns by which an angle is off, and what is said of these."""
+    hand = case.hand
+    if case.quantity.name not in ANGLES or hand.shape != engine.shape:
+        return case, ()
+    with np.errstate(invalid="ignore"):
+        turns = np.rint((hand - engine) / (2 * np.pi))
+    if not np.isfinite(turns).all() or not turns.any():
+        return case, ()
+    return replace(case, hand=hand - 2 * np.pi * turns), (turned_round(),)
+
+
+def turned_round() -> str:
+    return _("the angle differs by whole turns (2*pi) in places: it is the same angle")
+
+
 def _own_error(case: Case, engine: Array) -> tuple[float, float]:
     """The largest error relative to its entry's own largest value, and the largest value."""
     gap, own = (np.max(np.abs(x), axis=0) for x in (case.hand - engine, engine))
@@ -471,17 +500,20 @@ def by_digits(
     return rounded_otherwise(meant, engine, rounding_remarks(found.changed, at))
 
 
-def rounded_otherwise(meant: Case, engine: Array, rounded: Iterable[str]) -> Excuse | None:
+def rounded_otherwise(
+    meant: Case, engine: Array, rounded: Iterable[str], slack: float = 0.0
+) -> Excuse | None:
     """The excuse of rounded numbers, if what they stand for is right, or another valid form.
 
     Args:
         meant: the answers with the numbers that are meant.
         engine: the engine's answers.
         rounded: what the numbers stand for, in words.
+        slack: relative error that finite differences may leave.
     """
-    if np.max(relative_errors(meant.hand, engine)) <= TOLERANCES.formula_agrees:
+    if np.max(relative_errors(meant.hand, engine)) <= max(TOLERANCES.formula_agrees, slack):
         return Excuse("rounded", tuple(rounded))
-    odd = unusual(meant, engine)
+    odd = unusual(meant, engine, slack)
     return odd and replace(odd, remarks=(*odd.remarks, *rounded))
 
 

@@ -9,6 +9,7 @@ module            what it holds
 ``kept``          What a program's data hold, so that what an edited run writes into them is put
                   back
 ``named``         What the pieces of a program around an edit are: ``z`` is the axis of joint 2
+``nearly``        Programs that are right up to a small number of theirs: where they stop
 ``observed``      What every expression of a program was when it ran: its values, their shapes
 ``places``        The places of a program, and what is put there instead
 ``read``          The functions that a formula is made of, as syntax trees, and the data they use

@@ -205,7 +205,8 @@ def _if_meant(
     if len(told) > _TOLD:
         more = _("{count} more numbers are rounded, too").format(count=len(told) - _TOLD)
         told = [*told[:_TOLD], more]
-    return rounded_otherwise(replace(search.case, hand=answers), search.asked.wanted, told)
+    slack = TOLERANCES.finite_differences if search.asked.differences else 0.0
+    return rounded_otherwise(replace(search.case, hand=answers), search.asked.wanted, told, slack)
 
 
 def _is_rounded(one: Literal, exact: float) -> bool:

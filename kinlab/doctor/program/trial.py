@@ -30,7 +30,14 @@ from kinlab.doctor.program.own.definitions import (
     with_defaults,
     with_products,
 )
-from kinlab.doctor.program.own.plain import alike, attributes, closed, functions_in, written
+from kinlab.doctor.program.own.plain import (
+    alike,
+    attributes,
+    closed,
+    functions_in,
+    made_like,
+    written,
+)
 from kinlab.doctor.program.read import OwnProgram, implied
 
 
@@ -206,7 +213,7 @@ class Trial:
         """A list, tuple or dictionary in which objects may be kept."""
         if isinstance(value, tuple):
             parts = [self._own(one) for one in value]
-            return type(value)(parts)
+            return made_like(value, parts)
         new: Any = {} if isinstance(value, dict) else []
         self._copies[id(value)] = new
         if isinstance(value, dict):
@@ -519,7 +526,7 @@ def _again(value: Any) -> Any:
     if type(value) in (float, np.float64, int):
         return value
     if type(value) in (tuple, list):
-        return type(value)(map(_again, value))
+        return made_like(value, map(_again, value))
     return copy.deepcopy(value)
 
 

@@ -22,6 +22,7 @@ from kinlab.doctor.program.digits import of_rounded_numbers
 from kinlab.doctor.program.edits.numbers.as_the_arm import of_table
 from kinlab.doctor.program.grounds.scaled import is_own
 from kinlab.doctor.program.named import named
+from kinlab.doctor.program.nearly import of_small_numbers
 from kinlab.doctor.program.own.definitions import DEFAULT
 from kinlab.doctor.program.own.typed import line_of
 from kinlab.doctor.program.places import BLOCKS, DATA, ProgramEdit, called, changed, row_of
@@ -154,7 +155,7 @@ def lines(
     if not search.asked.faithful:
         return
     numbers = search.observed.numbers(len(search.asked.states))
-    excuse = _of_cuts(search) or of_rounded_numbers(search)
+    excuse = of_small_numbers(search) or _of_cuts(search) or of_rounded_numbers(search)
     if excuse is not None:
         yield WrongLines([], search.written_out, numbers, excuse)
         return
@@ -187,7 +188,7 @@ def _hiding(repair: ProgramRepair, search: LineSearch) -> str:
 
 def _of_cuts(search: LineSearch) -> Excuse | None:
     """Why a program is right that rounds by itself, if nothing else is off but rounded numbers."""
-    edits = cuts(search) if search.case.quantity.read is None else ()
+    edits = cuts(search)
     if not edits:
         return None
     told = _("{place} rounds: `{piece}`")
@@ -570,6 +571,8 @@ def believed(repair: ProgramRepair, search: LineSearch) -> ProgramRepair | None:
         return None
     if len(repair.edits) > 1 and not (exact and _needed(repair, search)):
         return None
+    if len(repair.edits) > 1 and search.asked.own_error <= TOLERANCES.nearly_agrees:
+        return None  # what is so near has not several slips
     edits = []
     for edit in repair.edits:
         if _robots_own(edit, search) or _of_rounding(edit, search) or _a_step(edit, repair, search):

@@ -18,7 +18,7 @@ from kinlab.check.compare import error_sizes
 from kinlab.check.diagnosis import Cause, Diagnosis
 from kinlab.check.quantities.inverse import TASKS, as_solutions, reached, row_by_row
 from kinlab.doctor import verdicts
-from kinlab.doctor.changes import Case
+from kinlab.doctor.changes import Case, table_of
 from kinlab.doctor.derivations.joined import (
     Found,
     ready,
@@ -101,6 +101,8 @@ def judged(
     right = Diagnosis(quantity, label, name, True, furthest)
     if study is None and furthest <= TOLERANCES.slips_leave:
         return _to_its_digits(right)
+    if study is None and (places := _joints_rounded(found, engine)):
+        return replace(right, form="rounded", remarks=(places,))
     if study is not None and study.off and not study.unknown:
         causes = [_all_off(study)]
     else:
@@ -143,10 +145,33 @@ def _to_its_digits(right: Diagnosis) -> Diagnosis:
     return replace(right, form="digits", remarks=said)
 
 
+def _joints_rounded(found: Solutions, engine: Array) -> str:
+    """What is said of joint positions that are rounded to some decimals; empty of others."""
+    case, given = found.case, found.q[found.given]
+    turning, table = ~slides(case.robot), table_of(case.robot)
+    if not turning.any() or table is None or not found.given.any(axis=1).all():
+        return ""
+    places = reached(case.robot, TASKS[case.quantity.name], found.q)
+    gaps = np.abs(places - engine[:, None])[found.given]
+    reach = max(1.0, sum(abs(link.a) + abs(link.d) for link in table.links))
+    for unit, said in (
+        (1.0, N_("its joint positions are rounded to {places} decimals")),
+        (np.pi / 180.0, N_("its joint positions are rounded to {places} decimals of a degree")),
+    ):
+        for decimals in range(7):
+            step = unit * 10.0**-decimals
+            off = np.abs(np.round(given[:, turning] / step) * step - given[:, turning])
+            if np.max(off) <= TOLERANCES.slips_leave * step:
+                small = np.max(gaps) <= 0.5 * step * case.robot.n * reach
+                return _(said).format(places=decimals) if small else ""
+    return ""
+
+
 def _rounded_perhaps(found: Solutions, furthest: float) -> bool:
     """Whether all that is wrong may be rounded constants, which leave few targets as they are."""
     every = ~found.wrong.any(axis=1)
-    return furthest <= TOLERANCES.nearly_agrees and 2 * int(every.sum()) <= len(every)
+    near = furthest <= TOLERANCES.nearly_agrees and 2 * int(every.sum()) <= len(every)
+    return near or furthest <= TOLERANCES.finite_differences  # an iteration stops somewhere
 
 
 def _all_off(study: LineStudy) -> Cause:

@@ -319,7 +319,9 @@ class Grounds:
         ):
             rows, gap = self.known[0].gaps(value)
             near = TOLERANCES.same_relation * float(np.max(np.abs(value)))
-            if np.array_equal(value, np.eye(len(value))):  # nothing turned or moved yet
+            size = len(value)
+            if value.shape == (size, size) and np.array_equal(value, np.eye(size)):
+                # nothing turned or moved yet
                 return True
             if not zeros_and_ones(value) and bool(rows) and bool(gap.min() <= near):
                 return True

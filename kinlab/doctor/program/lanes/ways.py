@@ -14,6 +14,7 @@ import numpy as np
 
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.program.lanes.numbers import Laned, LaneGroup, Lanes, is_number
+from kinlab.doctor.program.own.plain import made_like
 
 _BODY = ast.Assign | ast.AugAssign | ast.If | ast.For | ast.Pass
 """Statements that may run for some lanes alone."""
@@ -152,5 +153,5 @@ def _nothing_of(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         return np.zeros(value.shape)
     if isinstance(value, list | tuple):
-        return type(value)(map(_nothing_of, value))
+        return made_like(value, map(_nothing_of, value))
     return 0.0 if isinstance(value, Laned | int | float | complex | np.number) else value

@@ -7,7 +7,7 @@ import enum
 import functools
 import inspect
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from types import (
     BuiltinFunctionType,
@@ -349,3 +349,8 @@ def functions_in(value: Any, depth: int = _DEEP) -> Iterator[FunctionType]:
         if isinstance(one, FunctionType):
             yield one
         yield from functions_in(one, depth - 1)
+
+
+def made_like(row: Any, entries: Iterable[Any]) -> Any:
+    """A list or a tuple of the same kind with other entries; of a named one, too."""
+    return row._make(entries) if hasattr(row, "_make") else type(row)(entries)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Sequence
+from functools import cached_property
 from types import FunctionType
 from typing import Any
 
@@ -12,7 +13,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes, relative_errors
 from kinlab.doctor.bytecode.syntax import nodes
-from kinlab.doctor.changes import ANY_ZERO, Case
+from kinlab.doctor.changes import ANGLES, ANY_ZERO, Case
 from kinlab.doctor.program.trial import Trial, named_in, quietly
 from kinlab.errors import KinlabError
 from kinlab.formulas.record import state_by_state
@@ -97,13 +98,26 @@ class Asked:
         given = self.case.arguments
         return [given[argument][k] for k in self.watched] if argument in given else []
 
-    def from_right_zero(self, values: Array, wanted: Array) -> Array:
-        """A potential's answers moved to the right zero; others as they are.
+    @cached_property
+    def own_error(self) -> float:
+        """The largest relative error of the user's answers."""
+        if self.case.hand.shape != self.wanted.shape:
+            return float("inf")
+        return float(np.max(relative_errors(self.case.hand, self.wanted)))
+
+    def as_compared(self, values: Array, wanted: Array) -> Array:
+        """A potential's answers moved to the right zero, angles without whole turns.
+
+        Others are as they are.
 
         Args:
             values: at some states, or stacks of these.
             wanted: what is right there.
         """
+        if self.case.quantity.name in ANGLES:
+            with np.errstate(invalid="ignore"):
+                turns = np.rint((values - wanted) / (2 * np.pi))
+            return np.asarray(values - 2 * np.pi * turns)
         if self.case.quantity.name not in ANY_ZERO:
             return values
         firsts = np.take(values, [0], axis=values.ndim - wanted.ndim)
@@ -121,7 +135,7 @@ class Asked:
         if read is None:
             if found.size != np.prod(shape):
                 return None
-            return self.from_right_zero(found.reshape(shape), wanted)
+            return self.as_compared(found.reshape(shape), wanted)
         if found.shape[2] % robot.n:
             return None
         solutions = found.reshape(len(found) * len(wanted), -1, robot.n)
@@ -141,7 +155,7 @@ class Asked:
             own, hand = self.values(self.watched), self.case.hand[self.watched]
         if own is None or own.shape != hand.shape:
             return False
-        hand = self.from_right_zero(hand, self.wanted)
+        hand = self.as_compared(hand, self.wanted[self.watched])
         known = np.abs(hand[np.isfinite(hand)])
         size = max(float(np.max(known, initial=0.0)), float(np.max(self.sizes)))
         return bool(np.allclose(own, hand, rtol=1e-9, atol=1e-9 * size, equal_nan=True))
@@ -195,7 +209,7 @@ class Asked:
         if values is None:
             return None
         _stacks, wanted = self._few if which is self.first else self._at(which)
-        return self.from_right_zero(values, wanted)
+        return self.as_compared(values, wanted)
 
     def answers(self, which: Sequence[int]) -> Array | None:
         """The same as they are."""

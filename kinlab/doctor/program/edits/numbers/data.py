@@ -14,6 +14,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import names
 from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.own.plain import made_like
 from kinlab.doctor.program.places import DATA, ProgramEdit, places
 from kinlab.doctor.program.trial import FieldChange, Trial, is_data
 
@@ -253,13 +254,13 @@ def _row_put(table: Any, k: int, row: Any) -> tuple[FieldChange, ...]:
 def _with_entry(row: Any, k: int, value: Any) -> Any:
     new = [*row]
     new[k] = value
-    return np.array(new) if isinstance(row, np.ndarray) else type(row)(new)
+    return np.array(new) if isinstance(row, np.ndarray) else made_like(row, new)
 
 
 def _swapped(row: Any, i: int, j: int) -> Any:
     order = [*range(len(row))]
     order[i], order[j] = j, i
-    return row[order] if isinstance(row, np.ndarray) else type(row)(row[k] for k in order)
+    return row[order] if isinstance(row, np.ndarray) else made_like(row, [row[k] for k in order])
 
 
 def _row(row: Any) -> str:
@@ -281,7 +282,7 @@ def _whole(value: Any) -> Iterator[tuple[Any, str]]:
             if np.array_equal(value, value.T) and value.any():
                 yield 2 * np.diag(np.diagonal(value)) - value, "products' signs"
     elif isinstance(value, list | tuple) and all(type(one) in (int, float) for one in value):
-        yield type(value)(one * pi / 180 for one in value), "degrees"
+        yield made_like(value, [one * pi / 180 for one in value]), "degrees"
 
 
 @dataclass(frozen=True, eq=False)
@@ -413,4 +414,4 @@ def _rebuilt(old: Any, path: tuple[int, ...], new: float) -> Any:
         return new
     parts = [*old]
     parts[path[0]] = _rebuilt(parts[path[0]], path[1:], new)
-    return tuple(parts)
+    return made_like(old, parts)
