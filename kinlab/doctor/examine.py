@@ -250,7 +250,8 @@ def _possible(
                 noise = None if exact or rough else verdicts.to_digits(case, engine)
                 if noise is not None:
                     return [], (), noise, None
-                edited = [c for more in looking for c in _exactly(more.causes, worst)]
+                if not near:  # what is so near has not several slips
+                    edited = [c for more in looking for c in _exactly(more.causes, worst)]
             elif exact and program.odd and not program.written_out:
                 # a number that is wrong, too, may do nothing as long as a frame is another
                 edited = [c for more in looking for c in _exactly(behind(more, exact), worst)]

@@ -53,7 +53,7 @@ _DEEPEST = 2
 """Lists in lists of which it is told whether they are the same."""
 _REMEMBERED = 20_000
 """Answers of one part that are kept."""
-_TURNS = 2_000
+TURNS = 2_000
 """Turns that all ``while`` loops of one call may take."""
 _LINES = 20_000
 """Lines that may run before the function is asked, if they are to be run again for each edit."""
@@ -138,7 +138,7 @@ class Trial:
         ]
         self.space |= {"_turn": self._turn, "_edit": 0, "range": bounded_range, DEFAULT: DEFAULT}
         self.space |= PRODUCTS
-        self._turns = 0
+        self._turns, self.longest, self.most_turns = 0, 0, TURNS
         self._loads = [k for k, part in enumerate(program.parts) if part.sets]
         self._bodies = names_by_class(self.trees[k] for k in self._loads)
         for label in self._bodies:
@@ -381,7 +381,7 @@ class Trial:
         Raises:
             FailedError: it ends with an error, or ends itself.
         """
-        self._turns = 0
+        self._turns, self.longest = 0, max(self.longest, self._turns)
         with _its_own_errors():
             try:
                 if self._stale:
@@ -395,7 +395,7 @@ class Trial:
 
     def _turn(self) -> bool:
         self._turns += 1
-        if self._turns > _TURNS:
+        if self._turns > self.most_turns:
             raise RuntimeError("a loop without end")
         return True
 

@@ -571,8 +571,6 @@ def believed(repair: ProgramRepair, search: LineSearch) -> ProgramRepair | None:
         return None
     if len(repair.edits) > 1 and not (exact and _needed(repair, search)):
         return None
-    if len(repair.edits) > 1 and search.asked.own_error <= TOLERANCES.nearly_agrees:
-        return None  # what is so near has not several slips
     edits = []
     for edit in repair.edits:
         if _robots_own(edit, search) or _of_rounding(edit, search) or _a_step(edit, repair, search):

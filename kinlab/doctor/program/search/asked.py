@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Sequence
-from functools import cached_property
 from types import FunctionType
 from typing import Any
 
@@ -14,7 +13,7 @@ from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes, relative_errors
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import ANGLES, ANY_ZERO, Case
-from kinlab.doctor.program.trial import Trial, named_in, quietly
+from kinlab.doctor.program.trial import TURNS, Trial, named_in, quietly
 from kinlab.errors import KinlabError
 from kinlab.formulas.record import state_by_state
 from kinlab.tolerances import TOLERANCES
@@ -23,6 +22,8 @@ _NUMBERS = 4
 """Numbers of the answer at which an edit is tried first."""
 _CLEARLY = 0.5
 """Share of a program's largest error that shows it to be wrong at a state."""
+_TURNS, _LONGER = 100, 6
+"""Turns that loops may take at the first states; how many times as many as without an edit."""
 _WATCHED = 2
 """States at which a program is watched."""
 
@@ -50,10 +51,13 @@ class Asked:
         self.first = list(range(max(1, -(-_NUMBERS // size))))
         self.watched = [*self.first, len(self.first)][:_WATCHED]
         self._add_a_wrong_one()
+        self._turns = TURNS
         self.differences = self._differences()
         self.allowed = allowed if self.differences else TOLERANCES.formula_agrees
         self._ask()
         self.states = self.states_at(self.watched)
+        self.answers(self.first)
+        self._turns = max(_TURNS, _LONGER * self.trial.longest)
 
     def _ask(self) -> None:
         """What is asked of the program at the first states, and what it should answer."""
@@ -97,13 +101,6 @@ class Asked:
         """One of the arguments at the watched states, where the quantity has it."""
         given = self.case.arguments
         return [given[argument][k] for k in self.watched] if argument in given else []
-
-    @cached_property
-    def own_error(self) -> float:
-        """The largest relative error of the user's answers."""
-        if self.case.hand.shape != self.wanted.shape:
-            return float("inf")
-        return float(np.max(relative_errors(self.case.hand, self.wanted)))
 
     def as_compared(self, values: Array, wanted: Array) -> Array:
         """A potential's answers moved to the right zero, angles without whole turns.
@@ -215,6 +212,7 @@ class Asked:
         """The same as they are."""
         quantity, robot = self.case.quantity, self.case.robot
         stacks, wanted = self._few if which is self.first else self._at(which)
+        self.trial.most_turns = self._turns if which is self.first else TURNS
         try:
             answers = np.asarray(self._asked(None, *stacks))
             if np.iscomplexobj(answers):
