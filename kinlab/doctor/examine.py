@@ -61,6 +61,8 @@ _FAR = 0.15
 """Cost beyond the likeliest cause's from which another of the same evidence is not told."""
 _FETCHED = 1.35
 """Cost above which what explains a formula does not keep from looking at single joints."""
+_OF_NUMBERS = {"number", "sign", "entries swapped", "rows swapped", "name", "index", "factor"}
+"""Kinds of edits that may be of a program's numbers."""
 _PLAIN = 1.1
 """Cost up to which one reading is likelier than two slips in a text."""
 
@@ -250,8 +252,10 @@ def _possible(
                 noise = None if exact or rough else verdicts.to_digits(case, engine)
                 if noise is not None:
                     return [], (), noise, None
-                if not near:  # what is so near has not several slips
-                    edited = [c for more in looking for c in _exactly(more.causes, worst)]
+                # what is so near has no several slips but in its numbers
+                some = looking if not (near and program.stepping) else ()
+                edited = [c for more in some for c in _exactly(more.causes, worst)]
+                edited = [c for c in edited if not near or _OF_NUMBERS >= {*c.kinds}]
             elif exact and program.odd and not program.written_out:
                 # a number that is wrong, too, may do nothing as long as a frame is another
                 edited = [c for more in looking for c in _exactly(behind(more, exact), worst)]

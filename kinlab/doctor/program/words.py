@@ -119,6 +119,7 @@ class WrongLines:
             matrices.
         numbers: those that the program comes to at the first state, sorted.
         excuse: of a program that is right all the same, why; nothing else is said then.
+        stepping: whether the program may take differences.
         odd: whether a number of the program is none that the arm's table has in its place.
         hidden: of several lines those of which all but one do nothing as long as that one is wrong,
             with the kind of that one's slip.
@@ -129,6 +130,7 @@ class WrongLines:
     numbers: Array
     excuse: Excuse | None = None
     odd: bool = False
+    stepping: bool = False
     hidden: tuple[tuple[Cause, str], ...] = ()
 
 
@@ -168,7 +170,10 @@ def lines(
         causes = [cause_of(one, search) for one in told]
         pairs = zip(causes, told, strict=True)
         hidden = ((cause, kind) for cause, one in pairs if (kind := _hiding(one, search)))
-        yield WrongLines(causes, search.written_out, numbers, odd=odd, hidden=(*hidden,))
+        stepping = search.asked.differences
+        yield WrongLines(
+            causes, search.written_out, numbers, None, odd, stepping, hidden=(*hidden,)
+        )
 
 
 def _hiding(repair: ProgramRepair, search: LineSearch) -> str:
