@@ -25,6 +25,8 @@ _MOST = 300
 """Changes of one text that are tried with those of another, the likeliest."""
 _FEW = 5
 """Points at which they are tried first."""
+_ADDED, _FOREIGN = ("missing term", "missing factor"), 0.3
+"""What it costs more to add to a definition what it has no name of."""
 _AWAY = 0.1
 """What it costs more where a slip of the formula itself would do."""
 _NAMED = 3
@@ -56,14 +58,19 @@ def _part(line: Line, name: str) -> _Part:
         made = line.text.symbols.keys() - text.symbols.keys()
         own = Line(text, line.names, line.at, text.values(line.at), line.forms)
     study(own)
-    ranked = sorted(range(len(own.changes)), key=lambda k: own.changes[k].cost)
-    kept: list[tuple[int, str]] = []
-    for k in ranked:
-        new = rewritten(own.source, (own.changes[k],)) if not own.changes[k].everywhere else None
-        kept += [(k, new)] if new is not None and made.isdisjoint(words_in(new)) else []
-    rows = np.array([own.rows[k] for k, _new in kept]).reshape(len(kept), own.count)
-    changes = [own.changes[k] for k, _new in kept]
-    return _Part(name, changes, [new for _k, new in kept], own.root.value + rows)
+    kept: list[tuple[Change, str, Array]] = []
+    for one, row in zip(own.changes, own.rows, strict=True):
+        new = rewritten(own.source, (one,)) if not one.everywhere else None
+        if new is None or not made.isdisjoint(words_in(new)):
+            continue
+        foreign = (
+            bool(name) and one.kind in _ADDED and not {*words_in(new)} <= {*words_in(own.source)}
+        )
+        kept.append((replace(one, cost=one.cost + _FOREIGN * foreign), new, row))
+    kept.sort(key=lambda x: (x[0].kind in _ADDED, x[0].cost))  # there are thousands of these
+    rows = np.array([row for _one, _new, row in kept]).reshape(len(kept), own.count)
+    texts = [new for _one, new, _row in kept]
+    return _Part(name, [one for one, _new, _row in kept], texts, own.root.value + rows)
 
 
 def _put(text: Written, part: str, new: str) -> Written:

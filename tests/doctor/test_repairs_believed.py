@@ -1,6 +1,5 @@
 """Edits that make a program right and are not its slip are not told."""
 
-
 import numpy as np
 import pytest
 

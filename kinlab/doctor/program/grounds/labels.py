@@ -55,6 +55,8 @@ class Labels:
         for key in place.place:
             if isinstance(key, str):
                 names.append(key.lstrip("."))
+            elif hasattr(value, "_fields"):
+                names.append(value._fields[key])
             elif type(key) is int:
                 at.append(key - self._first(value))
             value = _inside(value, key)

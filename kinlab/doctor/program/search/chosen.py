@@ -17,6 +17,7 @@ from kinlab.doctor.program.edits.numbers.as_the_arm import as_it_is, of_table
 from kinlab.doctor.program.edits.numbers.own_numbers import of_own_numbers
 from kinlab.doctor.program.edits.scope import Scope
 from kinlab.doctor.program.grounds.as_called import of_centres
+from kinlab.doctor.program.grounds.called import kinds_called
 from kinlab.doctor.program.grounds.dimensions import LIKE, Dimensions
 from kinlab.doctor.program.grounds.lacking import lacking_terms
 from kinlab.doctor.program.grounds.products import missing_products
@@ -86,14 +87,31 @@ def _mirroring(asked: Asked, observed: Observed) -> Callable[[ProgramEdit], bool
             old: Any = edit.numbers[0]
         elif isinstance(edit.node, ast.Constant) and id(edit.changes[0].holder) in named:
             old = edit.node.value
-        elif edit.part != DATA and parts[edit.part].sets:
-            seen = observed.of(edit.node)  # worked out as the module is loaded
+        elif edit.part != DATA and (parts[edit.part].sets or _is_named_share(edit, named)):
+            seen = observed.of(edit.node)  # worked out as the module is loaded, or of numbers
             old = float(seen.values[0]) if seen and seen.shape == () and seen.values else None
         else:
             return False
-        return isinstance(old, int | float) and is_own(robot, old) and not is_own(robot, -old)
+        if not isinstance(old, int | float) or not is_own(robot, old):
+            return False
+        return not is_own(robot, -old) or (old > 0 and _is_distance(edit))
 
     return mirrors
+
+
+def _is_named_share(edit: ProgramEdit, named: set[int]) -> bool:
+    """Whether it is of a number over another, to which a name is set: ``lc2 = 0.4/2``."""
+    share = isinstance(edit.node, ast.BinOp) and isinstance(edit.node.op, ast.Div)
+    plain = all(isinstance(x, ast.Constant | ast.BinOp | ast.operator) for x in nodes(edit.node))
+    return share and plain and id(edit.changes[0].holder) in named
+
+
+def _is_distance(edit: ProgramEdit) -> bool:
+    """Whether a name is set to the number that is a distance's: l2, lc2."""
+    holder = edit.node if edit.part == DATA else edit.changes[0].holder
+    name = holder if isinstance(holder, str) else getattr(holder, "targets", [None])[0]
+    text = name if isinstance(name, str) else getattr(name, "id", "")
+    return kinds_called(text) in (("length",), ("centre",))
 
 
 def _at_best(edit: ProgramEdit) -> float:

@@ -1,0 +1,95 @@
+"""Slips in what the writer's own names stand for, alone and beside one more; three in one line."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import sympy
+
+import kinlab as kl
+
+RODS = (
+    "a = I1 + I2 + m1*lc1**2 + m2*(l1**2 + lc2**2); b = m2*l1*lc2; d = I2 + m2*lc2**2; "
+    "tau1 = (a + 2*b*c2)*qdd1 + (d + b*c2)*qdd2 - b*s2*qd2*qd1 - b*s2*(qd1 + qd2)*qd2 "
+    "+ g*(m1*lc1 + m2*l1)*c1 + m2*g*lc2*c12"
+)
+CRANK = (
+    "A1 = 2*l1*(e - x); B1 = -2*l1*y; C1 = l2^2 - e^2 - l1^2 - x^2 - y^2 + 2*e*x; "
+    "theta1 = 2*atan2(B1 + sqrt(A1^2 + B1^2 - C1^2), A1 + C1)"
+)
+TURN = (
+    "vw = vx*w1x + vy*w1y; vu = vx*u1x + vy*u1y; k = u1x*w1y - u1y*w1x; "
+    "thetadd1 = (ax*w1x + ay*w1y)/(l1*k) "
+    "+ (vw^2*(u1x*w1x + u1y*w1y)/l1 + vu^2/l2)/(l1*k^3)"
+)
+POSITION = "-s1*(a2*c2 + a3*c23 + d5*s234) + d4*c1 + d6*(c1*c5 + s1*s5*c234)"
+
+
+def with_slips(text: str, slips: list[tuple[str, str]]) -> str:
+    for right, wrong in slips:
+        assert right in text
+        text = text.replace(right, wrong, 1)
+    return text
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "text"),
+    [
+        ("planar2r_rods", "tau1", RODS),
+        ("isotropic", "theta1", CRANK),
+        ("isotropic", "thetadd1", TURN),
+        ("ur5", "T24", POSITION),
+    ],
+)
+def test_the_texts_without_slips_are_right(robot: str, entry: str, text: str) -> None:
+    assert kl.diagnose(robot, entry, text).agrees
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "text", "slips"),
+    [
+        pytest.param("planar2r_rods", "tau1", RODS, [("b = m2*l1*lc2", "b = m2*l1*l2")], id="a length for a centre"),
+        pytest.param("isotropic", "theta1", CRANK, [("A1 = 2*l1*(e - x)", "A1 = 2*l1*(e + x)")], id="within a root"),
+        pytest.param("planar2r_rods", "tau1", RODS, [("b = m2*l1", "b = m2*lc1"), ("d = I2 + m2*lc2**2", "d = I2 + m2*lc2")], id="two definitions"),
+        pytest.param("planar2r_rods", "tau1", RODS, [("d = I2 + m2*lc2**2", "d = I2 + m2*l2**2"), ("- b*s2*qd2*qd1", "+ b*s2*qd2*qd1")], id="one of each"),
+        pytest.param("isotropic", "theta1", CRANK, [("(e - x)", "(e + x)"), ("A1 + C1", "A1 - C1")], id="one of each, within a root"),
+        pytest.param("isotropic", "thetadd1", TURN, [("+ ay*w1y", "- ay*w1y"), ("vu^2/l2", "vu/l2"), ("k^3", "k^2")], id="three, two in a product"),
+        pytest.param("ur5", "T24", POSITION, [("-s1*(", "s1*("), ("d5*s234", "d5*c234"), ("+ d4*c1", "- d4*c1")], id="three, two in one term"),
+    ],
+)  # fmt: skip
+def test_slips_are_told_where_they_are(robot, entry, text, slips) -> None:
+    """What is shown as right is what was there, whatever the slips do to one another."""
+    found = kl.diagnose(robot, entry, with_slips(text, slips))
+    assert found.causes and len(found.causes[0].kinds) == len(slips), str(found)
+    shown = "".join(found.causes[0].shown.values()).replace(" ", "").replace("**", "^")
+    for right, _wrong in slips:
+        piece = right.split("= ")[-1].replace(" ", "").replace("**", "^").lstrip("+-")
+        assert piece in shown, str(found)
+
+
+def test_a_definition_that_a_right_formula_uses_is_not_blamed() -> None:
+    """Of two formulas with one name, where one is right, the slip is in the other itself."""
+    file = {"b": "m2*l1*lc2", "M12": "I2 + m2*lc2 + b*cos(q2)", "M21": "I2 + m2*lc2**2 + b*cos(q2)"}
+    text = "; ".join(f"{name} = {formula}" for name, formula in file.items())
+    found = kl.diagnose("planar2r_rods", "M12", text)
+    assert "lc2" in str(found) and "b:" not in str(found), str(found)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_what_is_shown_is_right_for_any_numbers(seed: int) -> None:
+    """Of a random slip in a definition and one in the formula; asked of sympy, not of the doctor."""
+    rng = np.random.default_rng(seed)
+    slips = [
+        [("b = m2*l1", "b = m1*l1"), ("d = I2", "d = I1"), ("b = m2*l1*lc2", "b = m2*l1*lc1")],
+        [("2*b*c2", "b*c2"), ("+ m2*g*lc2*c12", "- m2*g*lc2*c12"), ("m2*l1)*c1", "m2*l1)*s1")],
+    ]
+    chosen = [some[int(rng.integers(len(some)))] for some in slips]
+    found = kl.diagnose("planar2r_rods", "tau1", with_slips(RODS, chosen))
+    assert found.causes, str(found)
+    shown = dict(found.causes[0].shown)
+    right = dict(part.strip().split(" = ") for part in RODS.split(";"))
+    names = {name: sympy.Symbol(name) for name in "I1 I2 lc1 lc2 c1 c2 c12 s1 s2".split()}
+    for name, text in shown.items():
+        assert sympy.expand(sympy.sympify(text.replace("^", "**"), names)) == sympy.expand(
+            sympy.sympify(right[name], names)
+        )
