@@ -55,8 +55,8 @@ class Labels:
         for key in place.place:
             if isinstance(key, str):
                 names.append(key.lstrip("."))
-            elif hasattr(value, "_fields"):
-                names.append(value._fields[key])
+            elif (fields := getattr(value, "_fields", None)) is not None:
+                names.append(fields[key])
             elif type(key) is int:
                 at.append(key - self._first(value))
             value = _inside(value, key)
