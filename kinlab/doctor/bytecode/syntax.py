@@ -27,6 +27,12 @@ def names(tree: ast.AST, context: type[ast.expr_context] = ast.expr_context) -> 
     return [node.id for node in found if isinstance(node.ctx, context)]
 
 
+def called(node: ast.Call) -> str:
+    """The last name of what is called: ``cross`` of ``np.cross``."""
+    target = node.func
+    return target.attr if isinstance(target, ast.Attribute) else getattr(target, "id", "")
+
+
 def factors(node: ast.expr) -> list[ast.expr]:
     """Those of a product, from the left; what is none is its own."""
     if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult):

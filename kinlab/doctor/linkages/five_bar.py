@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import combinations_with_replacement
 from typing import Any
@@ -128,8 +128,7 @@ def refuse_massless(quantity: str, fivebar: FiveBar) -> None:
         ExpressionError: the quantity has masses in it, and the five-bar has none.
     """
     pairs = _pairs(fivebar)
-    plain = split_name(quantity)[0]
-    moving = READ[plain][0] > 0 and not is_of_servo(plain)
+    moving = "m" in words_of(quantities()[split_name(quantity)[0]]).numbers
     if moving and not np.any(pairs["IA"]) and not np.any(pairs["m"]):
         said = _("{name} has no masses: its torques are zero; give it a payload, or cranks of mass")
         raise ExpressionError(said.format(name=fivebar.name))
@@ -225,9 +224,34 @@ def is_either(quantity: str) -> bool:
     return quantity.startswith("fivebar_leg_")
 
 
-def is_of_servo(quantity: str) -> bool:
-    """Whether a quantity is a servo's, whichever five-bar it moves."""
-    return quantity.startswith("servo_")
+@dataclass(frozen=True)
+class Words:
+    """The names that a quantity's formula may have.
+
+    Attributes:
+        numbers: of the five-bar's numbers, those that are zero among them.
+        states: what moves, but the cranks' angles, each with its unit.
+        letters: which of q, qd and qdd.
+    """
+
+    numbers: tuple[str, ...]
+    states: dict[str, tuple[int, int, int]]
+    letters: tuple[str, ...]
+
+    @property
+    def of_the_linkage(self) -> bool:
+        """Whether it is the five-bar's, and not a servo's."""
+        return bool(self.numbers)
+
+
+def words_of(quantity: Quantity) -> Words:
+    """The names that a quantity's formula may have: a servo's are those that it is chosen by."""
+    chosen = {name: unit for name, unit in _CHOSEN_BY.items() if name in quantity.arguments}
+    if quantity.name.startswith("servo_"):
+        return Words((), chosen, ())
+    moving = quantity.name not in READ or READ[quantity.name][0] > 0
+    numbers = tuple(n for n in _NUMBERS if moving or n not in _DYNAMIC)
+    return Words(numbers, chosen | _states(quantity), _letters(quantity.name))
 
 
 def numbers_of(fivebar: FiveBar, leg: int = 0) -> dict[str, float]:
@@ -265,19 +289,16 @@ def with_numbers(fivebar: FiveBar, values: dict[str, Array]) -> FiveBar:
     )
 
 
-def parameters(quantity: str, fivebar: FiveBar) -> tuple[str, ...]:
+def parameters(quantity: Quantity, fivebar: FiveBar) -> tuple[str, ...]:
     """The names of numbers that a quantity's formula may have, but those that are zero."""
     pairs = _pairs(fivebar)
-    return tuple(n for n in parameters_or_zero(quantity) if np.any(pairs[n]))
+    return tuple(n for n in words_of(quantity).numbers if np.any(pairs[n]))
 
 
-def state_names(quantity: Quantity) -> dict[str, tuple[int, int, int]]:
-    """The names of what moves in a quantity's formula, but the cranks' angles, and their units."""
+def _states(quantity: Quantity) -> dict[str, tuple[int, int, int]]:
+    """What moves in a formula of the five-bar's, but the cranks' angles, with its unit."""
     given = quantity.arguments
-    found = {name: unit for name, unit in _CHOSEN_BY.items() if name in given}
-    if is_of_servo(quantity.name):
-        return found
-    found |= {"x": (0, 1, 0), "y": (0, 1, 0)}
+    found = {"x": (0, 1, 0), "y": (0, 1, 0)}
     if is_either(quantity.name):
         found["s"] = (0, 0, 0)
     if "v" in given:
@@ -302,12 +323,11 @@ def state_names(quantity: Quantity) -> dict[str, tuple[int, int, int]]:
     return {n: u for n, u in found.items() if not re.fullmatch(r"qd{1,2}\d", n)}
 
 
-def letters(quantity: Quantity) -> tuple[str, ...]:
-    """Which of q, qd and qdd a quantity's formula may have."""
-    name = quantity.name
-    if name.endswith(_WITHOUT_ANGLES) or is_either(name) or is_of_servo(name):
+def _letters(quantity: str) -> tuple[str, ...]:
+    """The cranks' angles and what is known of their rates in a formula of the five-bar's."""
+    if quantity.endswith(_WITHOUT_ANGLES) or is_either(quantity):
         return ()
-    before = _BEFORE.get(quantity.name, ())
+    before = _BEFORE.get(quantity, ())
     rates = ("qd",) * ("fivebar_rates" in before) + ("qdd",) * ("fivebar_turn" in before)
     return ("q", *rates)
 
@@ -323,17 +343,17 @@ def values_at(
         arguments: the states.
         index: the entry's; its leg is the first of it.
     """
-    if is_of_servo(quantity.name):
+    words = words_of(quantity)
+    if not words.of_the_linkage:
         return arguments
     count = len(arguments["xy"])
     leg = np.full(count, index[0] if index else 0)
     if "s" in arguments:
         leg = leg_of(arguments["s"])
     every = np.arange(count)
-    named = parameters_or_zero(quantity.name)
-    at = {n: pair[leg] for n, pair in _pairs(fivebar).items() if n in named}
+    at = {n: pair[leg] for n, pair in _pairs(fivebar).items() if n in words.numbers}
     moving = _moving(fivebar, quantity, arguments)
-    at |= {n: moving[n] for n in moving if n in state_names(quantity) or n[0] == "q"}
+    at |= {n: moving[n] for n in moving if n in words.states or n[0] == "q"}
     at["s"] = np.where(leg, -1.0, 1.0)
     own = {"theta": "q{i}", "uHw": "uHw{i}", "A": "A{i}", "B": "B{i}", "C": "C{i}"}
     own |= {f"{bar}{k}": f"{bar}{{i}}{k}" for bar in "uw" for k in "xy"}
@@ -344,14 +364,6 @@ def values_at(
     if is_either(quantity.name):
         at = {n: x for n, x in at.items() if not re.fullmatch(r"[quwABC]\w*[12]\w*|uHw[12]", n)}
     return at
-
-
-def parameters_or_zero(quantity: str) -> tuple[str, ...]:
-    """The names of numbers that a quantity's formula may have."""
-    if is_of_servo(quantity):
-        return ()
-    moving = quantity not in READ or READ[quantity][0] > 0
-    return tuple(n for n in _NUMBERS if moving or n not in _DYNAMIC)
 
 
 def _moving(fivebar: FiveBar, quantity: Quantity, arguments: dict[str, Array]) -> dict[str, Array]:
@@ -378,7 +390,7 @@ def _moving(fivebar: FiveBar, quantity: Quantity, arguments: dict[str, Array]) -
     for i in "12" if "w1x" in found else ():
         across = found[f"u{i}x"] * found[f"w{i}y"] - found[f"u{i}y"] * found[f"w{i}x"]
         found[f"uHw{i}"] = across
-    if "f1" in state_names(quantity):
+    if "f1" in words_of(quantity).states:
         for i, (turn, held) in enumerate(zip(*turn_and_weight(fivebar, arguments), strict=True)):
             found |= {f"f{i + 1}": turn, f"tauAg{i + 1}": held}
     return found
@@ -480,10 +492,10 @@ def with_equations(file: FormulaFile) -> FormulaFile:
 
 def known_names(entry: str) -> set[str]:
     """Every name that may have a value in a formula of an entry."""
-    quantity = quantities()[split_name(claimed(entry))[0]]
+    words = words_of(quantities()[split_name(claimed(entry))[0]])
     own = {"s", "theta", "ux", "uy", "wx", "wy", "uHw", "A", "B", "C"}
     moving = {f"{letter}{i}" for letter in ("q", "qd", "qdd") for i in "12"}
-    return {*parameters_or_zero(quantity.name), *state_names(quantity), *own, *moving}
+    return {*words.numbers, *words.states, *own, *moving}
 
 
 # -------- Terms that may be missing
@@ -495,9 +507,10 @@ _FACTORS = 3
 @lru_cache(maxsize=64)
 def terms_of(quantity: Quantity, names: tuple[str, ...]) -> tuple[Node, ...]:
     """Products of names that have the unit of a quantity, as terms that may be missing in it."""
-    if is_of_servo(quantity.name):
+    words = words_of(quantity)
+    if not words.of_the_linkage:
         return ()  # a ratio has no unit: anything could be added
-    units = {**_NUMBERS, **state_names(quantity)}
+    units = {**_NUMBERS, **words.states}
     units |= {"qd1": (0, 0, -1), "qd2": (0, 0, -1), "qdd1": (0, 0, -2), "qdd2": (0, 0, -2)}
     usable = [n for n in names if n in units and n != "s"]
     wanted = READ[quantity.name]

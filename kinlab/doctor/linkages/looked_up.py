@@ -64,7 +64,7 @@ class LookedUp:
     @cached_property
     def parameters(self) -> tuple[str, ...]:
         """The names of the five-bar's numbers that are not zero."""
-        return five_bar.parameters(self.quantity.name, self.linkage)
+        return five_bar.parameters(self.quantity, self.linkage)
 
     @property
     def values(self) -> dict[str, float]:
@@ -80,7 +80,7 @@ class LookedUp:
     @cached_property
     def loads(self) -> tuple[str, ...]:
         """The names of what moves, but the cranks."""
-        return tuple(five_bar.state_names(self.quantity))
+        return tuple(five_bar.words_of(self.quantity).states)
 
     @property
     def spelling(self) -> dict[str, str]:
@@ -90,7 +90,7 @@ class LookedUp:
     def letters(self, arguments: tuple[str, ...]) -> tuple[str, ...]:
         """Which of q, qd and qdd may stand in a text."""
         del arguments
-        return five_bar.letters(self.quantity)
+        return five_bar.words_of(self.quantity).letters
 
     def entry(self, index: tuple[Any, ...]) -> tuple[str, ...]:
         """What stands for an entry's formula."""

@@ -6,8 +6,8 @@ import ast
 from types import ModuleType
 from typing import Any
 
-from kinlab.doctor.bytecode.syntax import nodes
-from kinlab.doctor.program.places import ROUNDING, Here, ProgramEdit, called, places
+from kinlab.doctor.bytecode.syntax import called, nodes
+from kinlab.doctor.program.places import ROUNDING, Here, ProgramEdit, places
 from kinlab.doctor.program.search.repair import LineSearch
 
 _SHORT = ("float16", "half", "float32", "single", "f2", "f4", "int16", "int32", "int64", "int")

@@ -12,11 +12,11 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes
-from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.bytecode.syntax import called, nodes
 from kinlab.doctor.program.edits.numbers.as_the_arm import columns_as_meant, key_of
 from kinlab.doctor.program.edits.numbers.data import NumberPlace, numbers, together
 from kinlab.doctor.program.grounds.scaled import own_numbers
-from kinlab.doctor.program.places import ProgramEdit, called, changed, places
+from kinlab.doctor.program.places import ProgramEdit, changed, places
 from kinlab.doctor.program.search.repair import LineSearch
 from kinlab.doctor.program.trial import quietly
 from kinlab.doctor.text.meanings import CLOSE, stands_for

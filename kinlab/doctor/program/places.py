@@ -185,12 +185,6 @@ def written_into(node: ast.AST) -> Iterator[ast.Name]:
             yield inner
 
 
-def called(node: ast.Call) -> str:
-    """The last name of what is called: ``cross`` of ``np.cross``."""
-    target = node.func
-    return target.attr if isinstance(target, ast.Attribute) else getattr(target, "id", "")
-
-
 ANGLES = ("sin", "cos", "tan")
 """Functions of angles."""
 ROUNDING = ("round", "around", "round_", "rint", "trunc", "fix")

@@ -15,7 +15,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.compare import relative_errors
 from kinlab.check.diagnosis import Cause
-from kinlab.doctor.bytecode.syntax import factors, nodes
+from kinlab.doctor.bytecode.syntax import called, factors, nodes
 from kinlab.doctor.changes import Case, table_of
 from kinlab.doctor.program.cuts import cuts
 from kinlab.doctor.program.digits import of_rounded_numbers
@@ -25,7 +25,7 @@ from kinlab.doctor.program.named import named
 from kinlab.doctor.program.nearly import of_small_numbers
 from kinlab.doctor.program.own.definitions import DEFAULT
 from kinlab.doctor.program.own.typed import line_of
-from kinlab.doctor.program.places import BLOCKS, DATA, ProgramEdit, called, changed, row_of
+from kinlab.doctor.program.places import BLOCKS, DATA, ProgramEdit, changed, row_of
 from kinlab.doctor.program.read import read
 from kinlab.doctor.program.search.repair import LineSearch, ProgramRepair
 from kinlab.doctor.program.several.repairs import several

@@ -16,9 +16,8 @@ module            what it holds
                   statement
 ``forgotten``     What is forgotten as one writes: a term of two names, a vector behind its number
 ``guards``        What counts for some joints alone: conditions, and masks of arrays, around a term
-``scope``         What is known in one part of a program: names, entries, angles, and what may
-                  stand in a place
 ``subscripts``    The subscripts of a sum of products: another letter, two for one another
+``scope/``        What is known in one part of a program, and so may stand in a place of it
 ``single/``       Single expressions of a program otherwise: their operators, calls, entries, names
 ``numbers/``      The numbers of a program otherwise: those of its text, of its data, and the arm's
 ================  =================================================================================

@@ -6,14 +6,14 @@ import ast
 from collections.abc import Iterator
 from math import pi
 
-from kinlab.doctor.bytecode.syntax import copied, factors, names, nodes
-from kinlab.doctor.program.edits.scope import Scope, Turned, statement_of, stem_of, summands
+from kinlab.doctor.bytecode.syntax import called, copied, factors, names, nodes
+from kinlab.doctor.program.edits.scope.forms import Turned, statement_of, stem_of, summands
+from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.observed import Shape
 from kinlab.doctor.program.places import (
     ANGLES,
     Here,
     ProgramEdit,
-    called,
     follow,
     number,
     numbered,

@@ -7,7 +7,8 @@ from collections.abc import Container, Iterator
 
 from kinlab.doctor.bytecode.syntax import copied, names, nodes
 from kinlab.doctor.program.edits.additions import OtherAxis, OtherName
-from kinlab.doctor.program.edits.scope import Scope, Turned
+from kinlab.doctor.program.edits.scope.forms import Turned
+from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import ProgramEdit, paired, reads, root, written_into
 from kinlab.doctor.program.trial import FieldChange

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from functools import reduce
 
 from kinlab.doctor.bytecode.syntax import factors, names, nodes
-from kinlab.doctor.program.edits.scope import Scope, statement_of
+from kinlab.doctor.program.edits.scope.forms import statement_of
+from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import Here, ProgramEdit, number
 

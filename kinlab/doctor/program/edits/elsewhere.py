@@ -17,13 +17,12 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import copied, names, nodes
-from kinlab.doctor.program.edits.scope import Scope
+from kinlab.doctor.bytecode.syntax import called, copied, names, nodes
+from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import (
     Here,
     ProgramEdit,
-    called,
     is_nothing,
     paired,
     with_other,

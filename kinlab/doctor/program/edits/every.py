@@ -13,7 +13,7 @@ from math import pi
 
 import numpy as np
 
-from kinlab.doctor.bytecode.syntax import copied, names, nodes
+from kinlab.doctor.bytecode.syntax import called, copied, names, nodes
 from kinlab.doctor.program.edits import exchanges
 from kinlab.doctor.program.edits.additions import as_a_term
 from kinlab.doctor.program.edits.blocks import of_blocks
@@ -27,7 +27,8 @@ from kinlab.doctor.program.edits.forgotten import (
 )
 from kinlab.doctor.program.edits.guards import choices, masks, of_guards
 from kinlab.doctor.program.edits.numbers.data import of_data
-from kinlab.doctor.program.edits.scope import Scope, statement_of, summands
+from kinlab.doctor.program.edits.scope.forms import statement_of, summands
+from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.calls import of_call
 from kinlab.doctor.program.edits.single.comparisons import negated, of_comparison, of_comparisons
 from kinlab.doctor.program.edits.single.constants import of_constant
@@ -38,7 +39,7 @@ from kinlab.doctor.program.edits.single.rows import of_letters, of_sequence
 from kinlab.doctor.program.edits.single.whole import plus, shifted, value_of, whole_constant
 from kinlab.doctor.program.edits.subscripts import of_subscripts
 from kinlab.doctor.program.observed import Observed, Seen
-from kinlab.doctor.program.places import Here, ProgramEdit, called, number, paired, places
+from kinlab.doctor.program.places import Here, ProgramEdit, number, paired, places
 from kinlab.doctor.program.trial import Trial
 from kinlab.tolerances import TOLERANCES
 

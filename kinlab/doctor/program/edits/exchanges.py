@@ -6,10 +6,11 @@ import ast
 from collections.abc import Iterator
 from itertools import combinations
 
-from kinlab.doctor.bytecode.syntax import copied, names, nodes
-from kinlab.doctor.program.edits.scope import Scope, Turned
+from kinlab.doctor.bytecode.syntax import called, copied, names, nodes
+from kinlab.doctor.program.edits.scope.forms import Turned
+from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.observed import Observed, Shape
-from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, called, follow, number
+from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, follow, number
 
 _ANGLES = 1.13
 """Cost of the joint before in every angle of a statement."""

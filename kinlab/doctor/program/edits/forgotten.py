@@ -7,13 +7,14 @@ from collections.abc import Iterator
 from functools import reduce
 from itertools import combinations
 
-from kinlab.doctor.bytecode.syntax import copied, factors, names, nodes
+from kinlab.doctor.bytecode.syntax import called, copied, factors, names, nodes
 from kinlab.doctor.program.edits.additions import OtherAxis, summed
-from kinlab.doctor.program.edits.scope import Scope, Turned
+from kinlab.doctor.program.edits.scope.forms import Turned
+from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.entries import keys_of
 from kinlab.doctor.program.edits.single.whole import whole_constant
 from kinlab.doctor.program.observed import Shape
-from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, called, number, written_into
+from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, number, written_into
 
 _FORCES = ("f", "F")
 """How names of forces begin."""

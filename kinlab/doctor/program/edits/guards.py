@@ -5,10 +5,10 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
-from kinlab.doctor.bytecode.syntax import names, nodes
-from kinlab.doctor.program.edits.scope import Scope
+from kinlab.doctor.bytecode.syntax import called, names, nodes
+from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import Here, ProgramEdit, called, is_nothing
+from kinlab.doctor.program.places import Here, ProgramEdit, is_nothing
 
 _GUARDED = 1.08
 """What it costs that a term counts for some joints only."""

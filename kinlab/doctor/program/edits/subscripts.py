@@ -8,10 +8,10 @@ from collections.abc import Iterator
 from itertools import combinations
 from typing import Any
 
-from kinlab.doctor.bytecode.syntax import nodes
-from kinlab.doctor.program.edits.scope import Scope
+from kinlab.doctor.bytecode.syntax import called, nodes
+from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.observed import Observed, Shape
-from kinlab.doctor.program.places import Here, ProgramEdit, called
+from kinlab.doctor.program.places import Here, ProgramEdit
 
 _LETTER, _EXCHANGED = 1.04, 1.05
 """Cost of another letter, and of two for one another."""

@@ -16,11 +16,11 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.bytecode.syntax import called, nodes
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.numbers.data import NumberPlace, leaves_of, numbers, together
 from kinlab.doctor.program.edits.numbers.own_numbers import among, may_be_gravity, sizes_of
-from kinlab.doctor.program.edits.scope import ARCS
+from kinlab.doctor.program.edits.scope.functions import ARCS
 from kinlab.doctor.program.edits.single.whole import SIZES
 from kinlab.doctor.program.grounds.called import kinds_called
 from kinlab.doctor.program.grounds.scaled import unused
@@ -30,7 +30,6 @@ from kinlab.doctor.program.places import (
     DATA,
     Here,
     ProgramEdit,
-    called,
     paired,
     places,
     with_other,

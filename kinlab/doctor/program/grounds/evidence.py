@@ -16,14 +16,14 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import factors, names, nodes
+from kinlab.doctor.bytecode.syntax import called, factors, names, nodes
 from kinlab.doctor.glossary.meaning import as_vector
 from kinlab.doctor.glossary.textbook import Glossary, Row, Sense
-from kinlab.doctor.program.edits.scope import summands
+from kinlab.doctor.program.edits.scope.forms import summands
 from kinlab.doctor.program.grounds.called import unlike
 from kinlab.doctor.program.grounds.helpers import true_helpers
 from kinlab.doctor.program.observed import Observed, Seen
-from kinlab.doctor.program.places import DATA, ProgramEdit, called, paired
+from kinlab.doctor.program.places import DATA, ProgramEdit, paired
 from kinlab.doctor.program.trial import Trial, named_in
 from kinlab.tolerances import TOLERANCES
 

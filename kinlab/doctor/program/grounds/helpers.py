@@ -13,9 +13,8 @@ import numpy as np
 from scipy.linalg import expm
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.bytecode.syntax import called, nodes
 from kinlab.doctor.program.observed import Observed, Shape
-from kinlab.doctor.program.places import called
 from kinlab.doctor.program.trial import Trial
 from kinlab.tolerances import TOLERANCES
 

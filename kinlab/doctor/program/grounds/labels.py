@@ -8,10 +8,10 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.bytecode.syntax import called, nodes
 from kinlab.doctor.program.edits.numbers.data import NumberPlace
 from kinlab.doctor.program.grounds.called import stem
-from kinlab.doctor.program.places import DATA, called, paired
+from kinlab.doctor.program.places import DATA, paired
 from kinlab.doctor.program.trial import Trial
 
 Label = tuple[str, int | None, tuple[int, ...]]

@@ -16,12 +16,13 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import copied, names, nodes
+from kinlab.doctor.bytecode.syntax import called, copied, names, nodes
 from kinlab.doctor.glossary.textbook import Glossary
-from kinlab.doctor.program.edits.scope import Scope, standing, statement_of, summands
+from kinlab.doctor.program.edits.scope.forms import statement_of, summands
+from kinlab.doctor.program.edits.scope.part import Scope, standing
 from kinlab.doctor.program.grounds.products import is_whole
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import ANGLES, ProgramEdit, called, number
+from kinlab.doctor.program.places import ANGLES, ProgramEdit, number
 from kinlab.doctor.program.trial import Trial
 from kinlab.tolerances import TOLERANCES
 

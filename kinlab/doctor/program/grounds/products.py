@@ -7,10 +7,11 @@ from collections.abc import Iterator, Sequence
 from functools import reduce
 from itertools import combinations, islice, permutations
 
-from kinlab.doctor.program.edits.scope import Scope, standing
+from kinlab.doctor.bytecode.syntax import called
+from kinlab.doctor.program.edits.scope.part import Scope, standing
 from kinlab.doctor.program.grounds.dimensions import Dimensions
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import Here, ProgramEdit, called, number
+from kinlab.doctor.program.places import Here, ProgramEdit, number
 from kinlab.doctor.program.trial import Trial
 from kinlab.tolerances import TOLERANCES
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.check.quantities.fivebar import numbers as plain_numbers
-from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.bytecode.syntax import called, nodes
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.numbers.data import (
     NumberPlace,
@@ -33,7 +33,7 @@ from kinlab.doctor.program.grounds.called import kinds_called
 from kinlab.doctor.program.grounds.labels import Label, Labels
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.own.plain import attributes, home
-from kinlab.doctor.program.places import DATA, ProgramEdit, called
+from kinlab.doctor.program.places import DATA, ProgramEdit
 from kinlab.doctor.program.read import of_numbers
 from kinlab.doctor.program.trial import Trial, named_in
 from kinlab.errors import KinlabError, already_said

@@ -14,12 +14,12 @@ from types import ModuleType
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import names, nodes
+from kinlab.doctor.bytecode.syntax import called, names, nodes
 from kinlab.doctor.glossary.meaning import as_vector
 from kinlab.doctor.glossary.textbook import Glossary
 from kinlab.doctor.program.grounds.evidence import zeros_and_ones
 from kinlab.doctor.program.observed import Observed, Seen
-from kinlab.doctor.program.places import called, root
+from kinlab.doctor.program.places import root
 from kinlab.doctor.program.trial import Trial, named_in
 from kinlab.tolerances import TOLERANCES
 

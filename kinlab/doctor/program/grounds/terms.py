@@ -10,12 +10,13 @@ from itertools import combinations
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import copied, names
+from kinlab.doctor.bytecode.syntax import called, copied, names
 from kinlab.doctor.program.edits.additions import OtherName
-from kinlab.doctor.program.edits.scope import Scope, standing, statement_of, summands
+from kinlab.doctor.program.edits.scope.forms import statement_of, summands
+from kinlab.doctor.program.edits.scope.part import Scope, standing
 from kinlab.doctor.program.grounds.dimensions import Dimensions
 from kinlab.doctor.program.observed import Observed, Shape
-from kinlab.doctor.program.places import Here, ProgramEdit, called
+from kinlab.doctor.program.places import Here, ProgramEdit
 from kinlab.doctor.program.trial import Trial
 from kinlab.tolerances import TOLERANCES
 

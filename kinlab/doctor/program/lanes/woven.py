@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.doctor.bytecode.syntax import names, nodes, shallow
+from kinlab.doctor.bytecode.syntax import called, names, nodes, shallow
 from kinlab.doctor.program.lanes.ways import WRITES, apart, function_of, loaded, may_run_apart
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import (
@@ -23,7 +23,6 @@ from kinlab.doctor.program.places import (
     DATA,
     ProgramEdit,
     Spot,
-    called,
     hanging,
     root,
     with_other,

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.doctor.bytecode.syntax import names, nodes
+from kinlab.doctor.bytecode.syntax import called, names, nodes
 
 _GROWING = frozenset(["append", "extend", "insert", "update", "add", "setdefault", "fill"])
 """Methods that write into what they belong to."""
@@ -332,8 +332,7 @@ def _written_down(node: ast.AST | None, space: dict[str, Any]) -> bool:
         pi = any(isinstance(one, ast.Name | ast.Attribute) for one in both)
         return pi and all(_written_down(one, space) for one in both)
     if isinstance(node, ast.Call):
-        target = node.func
-        last = target.attr if isinstance(target, ast.Attribute) else getattr(target, "id", "")
+        target, last = node.func, called(node)
         own = isinstance(space.get(last), FunctionType) and not isinstance(target, ast.Attribute)
         root = _root(target)
         library = isinstance(target, ast.Name) or isinstance(space.get(root or ""), ModuleType)

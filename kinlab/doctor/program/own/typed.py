@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from types import FunctionType
 from typing import Any
 
+from kinlab.doctor.bytecode.syntax import called
 from kinlab.doctor.program.own.loaded import setting
 
 _WRAPPING = ("array", "asarray", "float64", "tuple", "list")
@@ -56,9 +57,7 @@ def _given(line: ast.Assign | ast.AnnAssign, name: str) -> ast.expr | None:
 def _entry(value: ast.expr, key: Any) -> ast.expr | None:
     """What stands in a table under a key; None where that is not typed there."""
     if isinstance(value, ast.Call) and len(value.args) == 1:
-        target = value.func
-        last = target.attr if isinstance(target, ast.Attribute) else getattr(target, "id", "")
-        return _entry(value.args[0], key) if last in _WRAPPING else None
+        return _entry(value.args[0], key) if called(value) in _WRAPPING else None
     if isinstance(value, ast.List | ast.Tuple):
         starred = any(isinstance(one, ast.Starred) for one in value.elts)
         whole = isinstance(key, int) and not starred and -len(value.elts) <= key < len(value.elts)

@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.bytecode.syntax import called, nodes
 from kinlab.doctor.program.grounds.apart import arm_apart
 from kinlab.doctor.program.grounds.scaled import OtherArm, is_free, is_own, other_arm
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import DATA, ROUNDING, ProgramEdit, called, changed
+from kinlab.doctor.program.places import DATA, ROUNDING, ProgramEdit, changed
 from kinlab.doctor.program.search.asked import Asked
 from kinlab.doctor.program.search.work import Work
 from kinlab.doctor.program.trial import FailedError, quietly

@@ -15,7 +15,7 @@ from kinlab.doctor.glossary.textbook import Glossary
 from kinlab.doctor.program.edits.every import edits
 from kinlab.doctor.program.edits.numbers.as_the_arm import as_it_is, of_table
 from kinlab.doctor.program.edits.numbers.own_numbers import of_own_numbers
-from kinlab.doctor.program.edits.scope import Scope
+from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.grounds.as_called import of_centres
 from kinlab.doctor.program.grounds.called import kinds_called
 from kinlab.doctor.program.grounds.dimensions import LIKE, Dimensions

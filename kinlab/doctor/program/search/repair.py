@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.bytecode.syntax import called, nodes
 from kinlab.doctor.changes import Case, table_of
 from kinlab.doctor.glossary.linkage import linkage_meanings
 from kinlab.doctor.glossary.textbook import Glossary, meanings
@@ -24,7 +24,7 @@ from kinlab.doctor.program.grounds.evidence import Grounds
 from kinlab.doctor.program.grounds.suspects import suspects
 from kinlab.doctor.program.lanes.run import InLanes
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import DATA, ProgramEdit, called, changed, row_of
+from kinlab.doctor.program.places import DATA, ProgramEdit, changed, row_of
 from kinlab.doctor.program.read import OwnProgram
 from kinlab.doctor.program.search.arms import other_arms_of
 from kinlab.doctor.program.search.asked import Asked

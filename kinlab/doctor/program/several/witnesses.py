@@ -17,11 +17,11 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import copied, nodes
+from kinlab.doctor.bytecode.syntax import called, copied, nodes
 from kinlab.doctor.glossary.textbook import Glossary
 from kinlab.doctor.program.grounds.evidence import zeros_and_ones
 from kinlab.doctor.program.grounds.suspects import TERM
-from kinlab.doctor.program.places import ProgramEdit, called
+from kinlab.doctor.program.places import ProgramEdit
 from kinlab.doctor.program.search.repair import LineSearch
 from kinlab.doctor.program.trial import FieldChange, NoProgramError
 from kinlab.doctor.program.variants import Variants

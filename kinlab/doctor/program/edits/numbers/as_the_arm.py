@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.bytecode.syntax import called, nodes
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.numbers.data import NumberPlace, leaves, together
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import DATA, ProgramEdit, called, number
+from kinlab.doctor.program.places import DATA, ProgramEdit, number
 from kinlab.doctor.program.trial import FieldChange, Trial
 from kinlab.model.dh import DHTable
 from kinlab.symbolic.vocabulary import vocabulary

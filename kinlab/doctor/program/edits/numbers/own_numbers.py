@@ -12,11 +12,12 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.doctor.bytecode.syntax import called
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.numbers.as_the_arm import typed
 from kinlab.doctor.program.edits.numbers.data import NumberPlace, measured, numbers
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import ANGLES, DATA, Here, ProgramEdit, called, number, places
+from kinlab.doctor.program.places import ANGLES, DATA, Here, ProgramEdit, number, places
 from kinlab.doctor.program.trial import Trial
 from kinlab.model.dh import DHTable
 from kinlab.tolerances import TOLERANCES

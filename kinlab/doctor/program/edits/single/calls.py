@@ -6,12 +6,12 @@ import ast
 from collections.abc import Iterator
 from itertools import combinations
 
-from kinlab.doctor.bytecode.syntax import names, nodes
-from kinlab.doctor.program.edits.scope import Scope
+from kinlab.doctor.bytecode.syntax import called, names, nodes
+from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.operators import DIAGONALS
 from kinlab.doctor.program.edits.single.whole import plus, whole_constant
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, called, number
+from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, number
 
 _ORDERED = ("cross", "dot", "arctan2", "atan2", "outer", "solve", "matmul", "subtract", "array")
 _DIAGONAL = 1.02

@@ -5,10 +5,12 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
+from kinlab.doctor.bytecode.syntax import called
 from kinlab.doctor.program.edits.numbers.data import measured
-from kinlab.doctor.program.edits.scope import PI, Scope
+from kinlab.doctor.program.edits.scope.functions import PI
+from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.whole import SIZES
-from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, called, number
+from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, number
 
 POWER, OF_A_NUMBER = 1.08, 1.25
 """Cost of another power, and of one of a number, which nobody means: ``0.25**2``."""

@@ -8,7 +8,8 @@ from itertools import permutations
 from typing import Any
 
 from kinlab.doctor.bytecode.syntax import copied, nodes
-from kinlab.doctor.program.edits.scope import Scope, statement_of
+from kinlab.doctor.program.edits.scope.forms import statement_of
+from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.rows import swapped_in
 from kinlab.doctor.program.edits.single.whole import plus, shifted, value_of, whole_constant
 from kinlab.doctor.program.observed import Observed

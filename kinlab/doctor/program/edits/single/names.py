@@ -6,7 +6,9 @@ import ast
 from collections.abc import Iterator
 
 from kinlab.doctor.bytecode.syntax import factors
-from kinlab.doctor.program.edits.scope import PI, Scope, Turned, statement_of
+from kinlab.doctor.program.edits.scope.forms import Turned, statement_of
+from kinlab.doctor.program.edits.scope.functions import PI
+from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.constants import OF_RODS
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import Here, ProgramEdit

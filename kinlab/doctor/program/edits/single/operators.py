@@ -6,11 +6,12 @@ import ast
 from collections.abc import Iterator
 from itertools import permutations
 
+from kinlab.doctor.bytecode.syntax import called
 from kinlab.doctor.program.edits import chains
 from kinlab.doctor.program.edits.single.constants import OF_A_NUMBER, POWER
 from kinlab.doctor.program.edits.single.rows import FLAT
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import Here, ProgramEdit, called, number
+from kinlab.doctor.program.places import Here, ProgramEdit, number
 
 _THREE = 3
 """Factors from which on the rest of a product stays."""

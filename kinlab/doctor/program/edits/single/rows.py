@@ -7,10 +7,10 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations
 from typing import Any
 
-from kinlab.doctor.bytecode.syntax import shallow
+from kinlab.doctor.bytecode.syntax import called, shallow
 from kinlab.doctor.program.edits.numbers.data import moved_on, other_words
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import Here, ProgramEdit, called
+from kinlab.doctor.program.places import Here, ProgramEdit
 
 _LONGEST = 6
 """Entries of a list of which any two may have been exchanged."""

@@ -1,0 +1,133 @@
+"""What may stand in a place of a part, and what speaks for it: what is used nowhere."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Iterator, Sequence
+
+import numpy as np
+
+from kinlab.doctor.bytecode.syntax import called, names, nodes
+from kinlab.doctor.program.edits.scope.known import Knowledge
+from kinlab.doctor.program.observed import Observed, Shape
+from kinlab.doctor.program.places import Here, places
+from kinlab.doctor.program.trial import Trial
+
+_UNUSED = 0.2
+"""What it is likelier that something is missing which is set and used nowhere."""
+
+
+class Scope(Knowledge):
+    """What may be written in one part: :meth:`stand` goes to a place of it.
+
+    Args:
+        trial: the program.
+        observed: what its expressions were.
+        part: which part.
+    """
+
+    def __init__(self, trial: Trial, observed: Observed, part: int) -> None:
+        super().__init__(trial, observed, part)
+        self._inside: frozenset[str] = frozenset()
+        self._known_here: dict[tuple[frozenset[str], Shape], dict[str, ast.expr]] = {}
+        self._names_in: dict[int, frozenset[str]] = {}
+
+    def are_halves(self, one: str, other: str) -> bool:
+        """Whether one of two numbers of one link is half of the other: ``lc1`` of ``l1``."""
+        digits = {name[len(name.rstrip("0123456789")) :] for name in (one, other)}
+        values = [self.space.get(name) for name in (one, other)]
+        floats = [x for x in values if isinstance(x, float)]
+        return len(digits) == 1 and len(floats) == 2 and min(floats) * 2 == max(floats)
+
+    def is_idle(self, node: ast.AST) -> bool:
+        """Whether it is what is set and used nowhere, or an entry of that."""
+        while isinstance(node, ast.Subscript):
+            node = node.value
+        if isinstance(node, ast.Attribute):
+            return node.attr in self.idle_attributes
+        return isinstance(node, ast.Name) and node.id in self.unused
+
+    def uses_idle(self, node: ast.AST) -> bool:
+        """Whether there is anything in it that is set or given, and used nowhere."""
+        if not self.unused.isdisjoint(names(node)):
+            return True
+        entries = [one for one in nodes(node) if isinstance(one, ast.Subscript)]
+        return bool(self.idle_entries) and any(ast.unparse(x) in self.idle_entries for x in entries)
+
+    def dear(self, node: ast.expr) -> float:
+        """What a piece costs more than one that is used nowhere."""
+        if isinstance(node, ast.Name):
+            return 0.0 if node.id in self.unused else _UNUSED / 2
+        if self.idle_attributes and self.is_idle(node):
+            return 0.0
+        return 0.0 if self.uses_idle(node) else _UNUSED
+
+    def crosses(self, node: ast.AST) -> bool:
+        """Whether a call takes the product of two vectors, by whatever name."""
+        if not isinstance(node, ast.Call) or len(node.args) != 2:
+            return False
+        own = self.cross is not None and ast.unparse(node.func) == ast.unparse(self.cross)
+        return own or called(node) == "cross"
+
+    def is_pose(self, node: ast.AST) -> bool:
+        """Whether a matrix is a transform, which nobody transposes."""
+        seen = self.observed.of(node)
+        rows = [x[3] for x in seen.values if x.shape == (4, 4)] if seen is not None else []
+        return bool(rows) and all(np.array_equal(row, (0, 0, 0, 1)) for row in rows)
+
+    def stand(self, above: Sequence[ast.AST]) -> None:
+        """Goes to a place of the part: counters of loops around it alone are known there."""
+        around = [getattr(one, "generators", [one]) for one in above]
+        loops = [x.target for some in around for x in some if hasattr(x, "iter")]
+        self._inside = self._counted.union(name for target in loops for name in names(target))
+
+    def pieces_here(self, shape: Shape) -> dict[str, ast.expr]:
+        """The expressions of one shape that may stand there, by their text."""
+        known = self._known_here.get((self._inside, shape))
+        if known is None:
+            outside = {*self.counters} - self._inside
+            every = self.pieces.get(shape, {}).items()
+            known = {text: one for text, one in every if outside.isdisjoint(names(one))}
+            self._known_here[self._inside, shape] = known
+        return known
+
+    @property
+    def counting(self) -> frozenset[str]:
+        """The counters of the loops around the place."""
+        return self._inside
+
+    def names_in(self, statement: ast.stmt) -> frozenset[str]:
+        """The names that a statement reads."""
+        if id(statement) not in self._names_in:
+            simple = isinstance(statement, ast.Assign | ast.AugAssign | ast.Return)
+            read = names(statement, ast.Load) if simple else ()
+            self._names_in[id(statement)] = frozenset(read)
+        return self._names_in[id(statement)]
+
+    def tests_here(self) -> list[ast.expr]:
+        """The conditions that may stand there."""
+        outside = {*self.counters} - self._inside
+        return [one for one in self.tests.values() if outside.isdisjoint(names(one))]
+
+    def simple(self, shape: Shape) -> Iterator[tuple[str, ast.expr]]:
+        """Names, entries of lists and attributes of one shape."""
+        for text, node in self.pieces_here(shape).items():
+            if isinstance(node, ast.Name | ast.Subscript | ast.Attribute):
+                yield text, node
+
+
+def standing(
+    trial: Trial, scopes: Sequence[Scope], asked: Callable[[Here], bool]
+) -> Iterator[tuple[Here, Scope]]:
+    """The places of a program that are asked for, each with the scope, which stands there.
+
+    Args:
+        trial: a program.
+        scopes: those of its parts.
+        asked: whether a place is meant.
+    """
+    for part, tree in enumerate(trial.trees):
+        for here in places(part, tree):
+            if asked(here):
+                scopes[part].stand((*here.above, here.node))
+                yield here, scopes[part]

@@ -1,0 +1,53 @@
+"""Expressions that may stand somewhere, by their shapes and their text."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping, Sequence
+
+from kinlab.doctor.bytecode.syntax import copied
+from kinlab.doctor.program.edits.scope.forms import entry, named
+from kinlab.doctor.program.observed import Observed, Shape
+
+Pieces = dict[Shape, dict[str, ast.expr]]
+Sized = tuple[Shape, ast.expr]
+"""An expression, and its shape."""
+_SQUARES = {(2, 2), (3, 3), (4, 4)}
+"""Shapes of matrices to which the unit matrix may be added."""
+_SHORT = 7
+"""Entries of a row of which any may be meant."""
+
+
+def put(pieces: Pieces, shape: Shape, piece: ast.expr) -> None:
+    """Adds an expression to those of its shape, if none of them reads like it."""
+    pieces.setdefault(shape, {}).setdefault(ast.unparse(piece), piece)
+
+
+def others_of_the_row(node: ast.expr, observed: Observed) -> Iterator[ast.expr]:
+    """The other entries of a row of which one is used, the other columns: ``T[:3, 3]``."""
+    if not isinstance(node, ast.Subscript):
+        return
+    sizes = observed.shape(node.value) or ()
+    key = node.slice
+    if isinstance(key, ast.Constant) and type(key.value) is int:
+        for k in range(sizes[0] if len(sizes) == 1 and sizes[0] <= _SHORT else 0):
+            yield entry(copied(node.value), ast.Constant(k))
+    elif isinstance(key, ast.Tuple) and isinstance(key.elts[0], ast.Slice) and sizes == (4, 4):
+        column = key.elts[-1]
+        if isinstance(column, ast.Constant) and type(column.value) is int:
+            for k in range(sizes[1]):
+                other = ast.Tuple([copied(key.elts[0]), ast.Constant(k)], ast.Load())
+                yield entry(copied(node.value), other)
+
+
+def unit_matrices(pieces: Pieces) -> Iterator[Sized]:
+    """The unit matrices of the sizes of the matrices that occur."""
+    for size in _SQUARES & pieces.keys():
+        yield size, ast.parse(f"np.eye({size[0]})", mode="eval").body
+
+
+def counted(lists: Mapping[str, Shape], counters: Sequence[str]) -> Iterator[Sized]:
+    """The entries of lists that counters count: ``m[i]``."""
+    for name, shape in lists.items():
+        for counter in counters:
+            yield shape, entry(named(name), named(counter))
