@@ -5,6 +5,7 @@ module            what it holds
 ================  =================================================================================
 ``changes``       A reading: one thing that people take differently, and what the engine says if
                   one does; the answer's single entries
+``definitions``   Slips in what a writer's own names stand for, alone or with one more
 ``derived``       The engine's quantities as derived formulas, entry by entry, for arms with a DH
                   table
 ``examine``       The examination: compare, try the readings, look for slips in the entries, rank
