@@ -449,15 +449,21 @@ def sides(text: str, place: str = "expression") -> tuple[str, str]:
 
 
 _NAMED_NEXT = r"(?=[\\\w{}]{1,40}(?:\(q\))?\s*&?\s*:?=)"
+_AND = r"(?:and|和|且)(?=\s)"
 _SPACES = r"\s|~|\\[,;:! ]|\\q?quad(?![A-Za-z])"
 _NEXT = re.compile(
-    rf"(\n|(?<!\\);|\\\\(?:\[[^\]]*\])?|(?:(?<!\\),|\\q?quad(?![A-Za-z])|\\text\s*\{{\s*(?:and|和|且))"
-    rf"(?:\s*\}}|\\text\s*\{{\s*(?:and|和|且)\s*\}}|{_SPACES}){{0,20}}+{_NAMED_NEXT})"
+    r"(\n|(?<!\\);|\\\\(?:\[[^\]]*\])?|(?:(?<!\\),|\\q?quad(?![A-Za-z])"
+    rf"|\\text\s*\{{\s*(?:and|和|且)|(?<=\s){_AND})"
+    rf"(?:\s*\}}|\\text\s*\{{\s*(?:and|和|且)\s*\}}|{_AND}|{_SPACES}){{0,20}}+{_NAMED_NEXT})"
 )
-"""What ends an equation: the end of a line, a semicolon, a comma before the next name."""
-_WHERE = re.compile(r"[,;]?\s*(?:\\q?quad\s*)?(?:\\text\{\s*(?:where|with)\s*\}|\bwhere\b)\s*")
+"""What ends an equation: a line's end, a semicolon, a comma or an "and" before the next name."""
+_WHERE = re.compile(
+    r"[,;]?\s*(?:\\q?quad\s*)?(?:\\text\{\s*(?:where|with)\s*\}|\bwhere\b"
+    rf"|(?<=[\s,;])with\s+{_NAMED_NEXT})\s*"
+)
 """What stands between a formula and what is explained behind it."""
 _GOES_ON = re.compile(r"(?<=[-+*/^=(,])\s*\n|\n(?=\s*[-+*/^=),])")
+_DEFINED = re.compile(r":\s*=|\\coloneqq(?![A-Za-z])")
 _SIGNED = re.compile(r"[&\s]*[-+*/]")
 _OWN_NAME = re.compile(r"[\\\w{} ]+")
 _NAME = re.compile(r"[A-Za-z]\w*(?:\[[\d,]+\])?")
@@ -500,7 +506,8 @@ def several(text: str, entry: str) -> dict[str, str]:
         Each with the equations that explain the writer's own names; empty where none, or only
         one, is an entry of the whole.
     """
-    lines = [line for line in _equations(text) if "=" in line]
+    cut = _equations(text)
+    lines = [line for line in cut if "=" in line]
     named: dict[str, str] = {}
     own: list[str] = []
     with suppress(ExpressionError):
@@ -514,10 +521,17 @@ def several(text: str, entry: str) -> dict[str, str]:
                 named[name] = line
             else:
                 own.append(line)
-    if len(named) < 2:
+    if len(named) < 2 or (entry in _ONE_NUMBER and _uses(named, cut)):
         return {}
     dollars = "$" if is_latex(text) else ""
     return {name: f"{dollars}{'; '.join([*own, line])}{dollars}" for name, line in named.items()}
+
+
+def _uses(names: Iterable[str], lines: Iterable[str]) -> bool:
+    """Whether a line without a left side is made of one of the names: it is what is asked for."""
+    bare_names = "|".join(map(re.escape, names))
+    lines = (re.sub(r"[_{}\\]", "", one.translate(_BELOW)) for one in lines if "=" not in one)
+    return any(re.search(rf"(?:{bare_names})(?!\d)", one) for one in lines)
 
 
 _STARTS_FORMULA = re.compile(r"^[-(\d.]")
@@ -631,7 +645,7 @@ def _equations(text: str) -> list[str]:
     What is explained behind a comma, or behind ``where``, comes before what it stands behind.
     """
     lines = [[""]]
-    pieces = _NEXT.split(_GOES_ON.sub(" ", bare(text)))
+    pieces = _NEXT.split(_GOES_ON.sub(" ", _DEFINED.sub("=", bare(text))))
     for k, piece in enumerate(pieces):
         last = lines[-1][-1]
         depth = sum(last.count(c) for c in "([{") - sum(last.count(c) for c in ")]}")
@@ -705,6 +719,9 @@ _MEANT = tuple({word.lower() for word in group.split()} for group in _IN_BOOKS)
 _POSES = {"t", "a", "h", "fk"}
 _POINT = {"x": "14", "y": "24", "z": "34", "px": "14", "py": "24", "pz": "34"}
 """Which entries of a pose the coordinates of its point are."""
+_ONE_NUMBER = {*"VPUTKL", "Ep", "Ek"}
+_ONE_NUMBER |= {"potential", "kinetic", "potential_energy", "kinetic_energy", "lagrangian"}
+"""Entries that are one number by themselves, though V1 and V2 are parts of a vector."""
 _VECTORS = "gravity_torques inverse_dynamics coriolis_torques momentum statics statics_tool"
 _MATRICES = "mass_matrix coriolis_matrix jacobian jacobian_tool jacobian_spatial fk planar_jacobian"
 LONG = {*_MATRICES.split(), *_VECTORS.split()}
