@@ -42,6 +42,7 @@ _NAME = re.compile(r"[A-Za-z][A-Za-z0-9]*")
 _PLAIN = re.compile(r"\d+(?:\.\d+)?|pi")
 _LETTERS = "alpha beta gamma delta theta Theta lambda mu phi psi omega rho tau"
 _GREEK = {rf"\{name}": name for name in _LETTERS.split()}
+_GREEK[r"\pi"] = "pi"
 _GREEK |= {rf"\var{name}": name for name in ("theta", "phi", "rho")}
 _OF_TOOL = ("x", "y")
 """Coordinates of the tool, whose rates a five-bar's formulas have."""
@@ -320,7 +321,7 @@ class _Reader:
             return self.function()
         if token[:1].isdigit():
             return self.single()
-        if token == r"\pi":
+        if token == r"\pi" and self.tokens[self.at + 1 : self.at + 2] != ["_"]:
             return self.leaf(self.take()[1:], self.at - 1)
         return self.name()
 

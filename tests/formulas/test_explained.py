@@ -1,0 +1,115 @@
+"""Names that a writer explains beside his formula, in front of it or behind ``where``."""
+
+from __future__ import annotations
+
+import pytest
+
+import kinlab as kl
+from kinlab.errors import ExpressionError
+
+
+def judged(entry: str, text: str, robot: str = "planar2r") -> kl.Diagnosis:
+    return kl.diagnose(robot, entry, text)
+
+
+def agrees(entry: str, text: str, robot: str = "planar2r") -> None:
+    found = judged(entry, text, robot)
+    assert found.agrees and found.function == entry, str(found)
+
+
+H1, H2 = "h1 = l1*s1", "h2 = h1 + l2*s12"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"m1*g*h1 + m2*g*h2, where {H1}, {H2}",
+        "m1 g h1 + m2 g h2; h1 = l1 s1; h2 = l1 s1 + l2 s12",
+        f"{H1}; {H2}; m1*g*h1 + m2*g*h2",
+        r"m_1 g h_1 + m_2 g h_2, \text{ where } h_1 = l_1 s_1, h_2 = l_1 s_1 + l_2 s_{12}",
+        "m₁gh₁ + m₂gh₂; h₁ = l₁s₁; h₂ = l₁s₁ + l₂sin(θ₁+θ₂)",
+    ],
+)
+def test_a_formula_without_a_left_side_is_what_is_asked_for(text):
+    agrees("V", text)
+
+
+def test_what_is_wrong_in_such_a_formula_is_told():
+    found = judged("V", "m1*g*h1 + m2*g*h2, where h1 = l1*s1, h2 = h1 + l2*s2")
+    assert (found.agrees, found.function) == (False, "V")
+    assert "h2: s2 should be s12" in str(found)
+
+
+def test_entries_of_a_vector_are_judged_as_before():
+    g1, g2 = "(m1+m2)*g*l1*c1 + m2*g*l2*c12", "m2*g*l2*c12"
+    assert judged("g", f"g1 = {g1}; g2 = {g2}; [g1; g2]").agrees
+    h = "m2*l1*l2*s2"
+    assert judged("V", f"V1 = -{h}*(2*qd1*qd2 + qd2^2); V2 = {h}*qd1^2").agrees
+
+
+# -------- Names with an underscore
+
+P1, P3 = "(m1+m2)*l1^2 + m2*l2^2", "m2*l1*l2"
+
+
+@pytest.mark.parametrize(
+    ("entry", "text"),
+    [
+        ("M11", "p_1 = 1.115; p_3 = 0.3; M11 = p_1 + 2 p_3 c_2"),
+        ("M11", f"p_1 = {P1}; p_3 = {P3}; M_11 = p_1 + 2*p_3*cos(q_2)"),
+        ("M11", rf"\pi_1 = {P1}; \pi_{{2}} = m_2 l_1 l_2; M_{{11}} = \pi_1 + 2 \pi_2 c_2"),
+        ("M11", "π₁ = (m₁+m₂) l₁² + m₂ l₂²; π₂ = m₂ l₁ l₂; M₁₁ = π₁ + 2 π₂ cos θ₂"),
+        ("V", "V_1 = m1*g*l1*s1; V_2 = m2*g*(l1*s1 + l2*s12); V = V_1 + V_2"),
+        ("V", "V_1 = m1 g l1 s1; V_2 = m2 g (l1 s1 + l2 s12); V_1 + V_2"),
+        ("V", "V_1 = m1*g*l1*s1; V_2 = V1/m1*m2 + m2*g*l2*s12; V = V_1 + V_2"),
+        ("x", "l_1 = 0.5; x = l_1*c_1 + l_2*c_12"),
+    ],
+)
+def test_a_name_with_an_underscore_that_is_explained(entry, text):
+    agrees(entry, text)
+
+
+def test_such_a_name_is_told_as_its_writer_has_it():
+    text = "V_1 = m1*g*l1*s1; V_2 = m2*g*(l1*s1 + l2*s2); V = V_1 + V_2"
+    assert "V_2: s2 should be s12 in l2*s2" in str(judged("V", text))
+    assert not judged("M11", "p_1 = 1.115; p_3 = 0.35; M11 = p_1 + 2 p_3 c_2").agrees
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("V = V_1 + V_2", "'V_1' is unknown"),
+        ("V_1 = m1*g*l1*s1; V = V_1 + V_2", "'V_2' is unknown"),
+        (r"\pi_1 + \pi_2 \cos q_2", "'pi1' is unknown"),
+        ("l_1 = 0.4; V = m1*g*l_1*s1", "l1 is 0.4"),
+        ("V_1 = V_1 + m1; V = V_1", "'V_1' is unknown"),
+    ],
+)
+def test_a_name_with_an_underscore_that_is_not_explained_is_refused(text, said):
+    with pytest.raises(ExpressionError, match=said):
+        judged("V", text)
+
+
+# -------- How explanations are joined
+
+
+@pytest.mark.parametrize(
+    ("entry", "text"),
+    [
+        ("V", "m1 g h1 + m2 g h2, where h1 = l1 s1 and h2 = l1 s1 + l2 s12"),
+        ("V", f"V = m1*g*h1 + m2*g*h2 with {H1}, and {H2}"),
+        ("V", f"V = m1*g*h1 + m2*g*h2，其中 {H1} 和 {H2}"),
+        ("M12", "k := m2 l2; M12 = k (l2 + l1 c2)"),
+        ("M12", r"k \coloneqq m_2 l_2; M_{12} := k (l_2 + l_1 c_2)"),
+    ],
+)
+def test_explanations_are_joined_by_words(entry, text):
+    agrees(entry, text)
+
+
+def test_what_is_wrong_behind_such_words_is_told():
+    found = judged("V", "m1 g h1 + m2 g h2, where h1 = l1 s1 and h2 = l1 s1 - l2 s12")
+    assert not found.agrees and found.function == "V"
+    assert not judged("M12", "k := m2 l2; M12 = k (l2 + l1 s2)").agrees
+    with pytest.raises(ExpressionError):
+        judged("V", "m1 g h1 and m2 g h2")
