@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from kinlab.errors import ExpressionError
 from kinlab.formulas.signs import latex
 from kinlab.formulas.signs.beside import with_products
+from kinlab.formulas.signs.degrees import in_radians
 from kinlab.formulas.signs.refusals import refused
 from kinlab.formulas.signs.remarks import without_remarks
 from kinlab.host.language import N_
@@ -23,7 +24,9 @@ from kinlab.host.language import N_
 # -------- Which writing it is
 
 _LATEX = re.compile(r"\\[A-Za-z]|\$|[_^]\{")
-_PREFIX = re.compile(r"(?<![\w.])(?:np|numpy|math|sp|sympy)\.(?=[A-Za-z])")
+_MODULES = "np|numpy|math|Math|sp|sympy"
+_PREFIX = re.compile(rf"(?<![\w.])(?:{_MODULES})\.(?=[A-Za-z])")
+_CONSTANT = re.compile(r"(?<![\w.])Math\.PI(?!\w)")
 _BRACKETS = re.compile(r"(?<![\w.])([A-Za-z]\w*)\s*\[\s*(-?\d+)\s*\]")
 _INDEXED = re.compile(r"(?<![\w.])([A-Za-z]\w*)\(\s*(\d+)\s*\)")
 _UPPER = re.compile(r"(?<![\w.])([CS])_?([1-9]+)(?!\w)")
@@ -157,7 +160,8 @@ def plain_formula(text: str, place: str = "expression", writing: Hand | None = N
     """
     writing = hand([text]) if writing is None else writing
     typeset = is_latex(text)
-    text = _PRIMED.sub(_rate, bare(text))
+    text = _CAPITAL_FUNCTION.sub(_small, _PRIMED.sub(_rate, bare(text)))
+    text = in_radians(text, "pi" if text.isascii() and not typeset else "π", calls=not typeset)
     if not typeset and _side_by_side(text, writing):
         text = _CENTRE.sub(lambda m: f"l_{{c{m[1].translate(_BELOW)}}}", text)
         typeset, text = True, text.replace("**", "^")
@@ -172,7 +176,7 @@ def plain_formula(text: str, place: str = "expression", writing: Hand | None = N
 
 _OF_ONE_LETTER = r"sin|cos|tan|sqrt|lc[₀-₉]+|[^\W\d_][\u0307\u0308]?(?:_?\d+|[₀-₉]+)?"
 _OF_LETTERS = (
-    r"(?:(?:np|numpy|math|sp|sympy)\.)?[^\W\d][^\W⁰¹²³⁴-⁹½]*[\u0307\u0308]?[^\W⁰¹²³⁴-⁹½]*"
+    rf"(?:(?:{_MODULES})\.)?[^\W\d][^\W⁰¹²³⁴-⁹½]*[\u0307\u0308]?[^\W⁰¹²³⁴-⁹½]*"
     r"(?:\(\s*\d+\s*\)|\[\s*\d+\s*\])?['′″]*"
 )
 _REST = r"|[⁰¹²³⁴-⁹]|\d+\.?\d*(?:[eE][+-]?\d+)?|[-+−–]"
@@ -187,6 +191,7 @@ def leaves_of(text: str, place: str, writing: Hand, typeset: bool) -> list[latex
         typeset: whether there were dollars around it.
     """
     found: list[latex.Leaf] = []
+    text = _CAPITAL_FUNCTION.sub(_small, text)
     typeset = typeset or _side_by_side(text, writing)
     if typeset and text.isascii():
         latex.expression(text.replace("**", " ^"), place, found)
@@ -263,12 +268,12 @@ def bare(text: str) -> str:
 
 
 _POWER = re.compile(r"(?<![\w.])(?:power|pow)\s*(?=\()")
-_MATHEMATICA = re.compile(r"(?<![\w.])(?:Sin|Cos|Tan|Sqrt|Abs)(?=\()")
+_CAPITAL_FUNCTION = re.compile(r"(?<![\w.\\])[A-Z][A-Za-z]+2?(?=\s*\()")
 _DEGREES = re.compile(r"(?<![\w.])a?(sin|cos|tan)d\s*\(")
 
 
 def _plain_signs(text: str, place: str) -> str:
-    text = _MATHEMATICA.sub(lambda found: found[0].lower(), _PREFIX.sub("", text))
+    text = _PREFIX.sub("", _CONSTANT.sub("pi", text))
     text = _with_powers(_ELEMENTWISE.sub(r"\1", text))
     if found := _DEGREES.search(text):
         raise refused(
@@ -286,6 +291,13 @@ def _plain_signs(text: str, place: str) -> str:
             ),
         )
     return text
+
+
+def _small(found: re.Match[str]) -> str:
+    """A function's name in small letters: ``COS(``, ``Sqrt(``, ``Atan2(``."""
+    name = found[0]
+    known = name.lower() in _FUNCTIONS and name in (name.upper(), name.capitalize())
+    return name.lower() if known else name
 
 
 def _with_powers(text: str) -> str:
@@ -583,7 +595,7 @@ def _is_formula(text: str) -> bool:
 def _is_name(text: str) -> bool:
     """Whether a side of an equation is a name alone: ``M_{21}``, ``\\tau_2``, not ``-y``."""
     with suppress(ExpressionError):
-        return bool(_NAME.fullmatch(entry_name(text.strip("& "))))
+        return "∂" not in text and bool(_NAME.fullmatch(entry_name(text.strip("& "))))
     return False
 
 
@@ -668,6 +680,11 @@ _DETERMINANT = re.compile(r"\\det\s*(?:\(?\s*J\s*\)?)?|\|\s*J\s*\|")
 """The determinant of J as it is typed."""
 
 
+_DERIVATIVE = re.compile(r"∂\s*([VUPxy])\s*/\s*∂\s*(?:q|th|theta|θ)_?\{?([1-9])\}?")
+_DERIVED = {"V": "g", "U": "g", "P": "g", "x": "J1", "y": "J2"}
+"""What the derivative of something by a joint's position is called."""
+
+
 def entry_name(text: str, place: str = "expression", writing: Hand | None = None) -> str:
     r"""The name on a left side: ``\tau_{2}``, ``τ₂``, ``tau(2)`` and ``tau_2`` are tau2.
 
@@ -684,6 +701,9 @@ def entry_name(text: str, place: str = "expression", writing: Hand | None = None
     typed = _IN_BASE.sub("", _OF_STATE.sub("", bare(text).strip("& ")).strip())
     if _DETERMINANT.fullmatch(typed):
         return "det J"
+    if "∂" in typed:
+        found = _DERIVATIVE.fullmatch(unicodedata.normalize("NFKC", typed))
+        return f"{_DERIVED[found[1]]}{found[2]}" if found else typed
     named = _NAMED.fullmatch(typed)
     if named and (not named[2] or named[1] == "fk" or "_" in named[1] or named[1] in LONG):
         return typed  # a quantity by its own name
