@@ -19,7 +19,7 @@ from kinlab.formulas.signs.beside import with_products
 from kinlab.formulas.signs.degrees import in_radians
 from kinlab.formulas.signs.refusals import refused
 from kinlab.formulas.signs.remarks import without_remarks
-from kinlab.host.language import N_
+from kinlab.host.language import N_, _
 
 # -------- Which writing it is
 
@@ -167,16 +167,16 @@ def plain_formula(text: str, place: str = "expression", writing: Hand | None = N
         typeset, text = True, text.replace("**", "^")
     text = ascii_text(text, place, as_latex=typeset)
     if typeset:
-        text = latex.expression(text, place)
+        text = latex.expression(text, place, known=writing.known)
     else:
-        text = _plain_signs(text, place)
+        text = _waves_apart(_plain_signs(text, place), place, writing)
         text = with_products(_without_indices(text, place, writing), _FUNCTIONS, place)
     return _capitals(text, place, writing)
 
 
 _OF_ONE_LETTER = r"sin|cos|tan|sqrt|lc[₀-₉]+|[^\W\d_][\u0307\u0308]?(?:_?\d+|[₀-₉]+)?"
 _OF_LETTERS = (
-    rf"(?:(?:{_MODULES})\.)?[^\W\d][^\W⁰¹²³⁴-⁹½]*[\u0307\u0308]?[^\W⁰¹²³⁴-⁹½]*"
+    rf"[csCS]\d+(?=(?:[csCS]\d+)+(?!\w))|(?:(?:{_MODULES})\.)?[^\W\d][^\W⁰¹²³⁴-⁹½]*[\u0307\u0308]?[^\W⁰¹²³⁴-⁹½]*"
     r"(?:\(\s*\d+\s*\)|\[\s*\d+\s*\])?['′″]*"
 )
 _REST = r"|[⁰¹²³⁴-⁹]|\d+\.?\d*(?:[eE][+-]?\d+)?|[-+−–]"
@@ -194,7 +194,7 @@ def leaves_of(text: str, place: str, writing: Hand, typeset: bool) -> list[latex
     text = _CAPITAL_FUNCTION.sub(_small, text)
     typeset = typeset or _side_by_side(text, writing)
     if typeset and text.isascii():
-        latex.expression(text.replace("**", " ^"), place, found)
+        latex.expression(text.replace("**", " ^"), place, found, writing.known)
         return found
     for piece in re.finditer((_OF_ONE_LETTER if typeset else _OF_LETTERS) + _REST, text):
         plain = piece.group().translate(_ABOVE)
@@ -291,6 +291,27 @@ def _plain_signs(text: str, place: str) -> str:
             ),
         )
     return text
+
+
+_WAVES = re.compile(r"(?<![\w.])(\d*\.?\d+)?((?:[cs]\d+){2,}|(?:[CS]\d+){2,})(?!\w)")
+_WAVE = re.compile(r"[csCS]\d+")
+
+
+def _waves_apart(text: str, place: str, writing: Hand) -> str:
+    """``5.89s1s2`` as ``5.89s1 s2``, a product of sines and cosines, unless s1s2 is a name."""
+
+    def apart(found: re.Match[str]) -> str:
+        number, name = found.groups()
+        if name in writing.known:
+            return found[0]
+        waves, behind = _WAVE.findall(name), text[found.end() :].lstrip()
+        if behind[:1] == "^" or behind[:2] == "**":
+            remedy = _("{call}, with parentheses").format(call="*".join(waves))
+            said = N_("{what} can be read in two ways; write {remedy}")
+            raise refused(place, said, what=f"{name}^", remedy=remedy)
+        return (number or "") + " ".join(waves)
+
+    return _WAVES.sub(apart, text)
 
 
 def _small(found: re.Match[str]) -> str:
