@@ -146,7 +146,8 @@ def formula_file(
         own, entries[key] = typed.explained(_text(value, f"{place}: {key}"), key)
         used = _SIGNS.sub("", " ".join([*own.values(), entries[key]]))
         for name, formula in own.items():
-            if name not in used and not _readable(formula):
+            unused = name not in used or name[0] == "L"
+            if unused and not _readable(formula):
                 continue  # beside the formula, and not used in it
             if symbols.setdefault(name, formula) != formula:
                 said = N_(

@@ -524,8 +524,14 @@ def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
     if entry and left and not of_one_name(entry_name(left), entry_name(entry)):
         return {}, text
     dollars = "$" if is_latex(text) else ""
-    formulas = {entry_name(name): f"{dollars}{bare(right)}{dollars}" for name, _sign, right in own}
+    formulas = {_own_name(name): f"{dollars}{bare(right)}{dollars}" for name, _sign, right in own}
     return formulas, f"{dollars}{lines[-1]}{dollars}"
+
+
+def _own_name(text: str) -> str:
+    """A name that is explained: L3 of ``L3 = 0.3``, for L is the Lagrangian only as an entry."""
+    name, long = entry_name(text), _PRINTED["L"]
+    return name.replace(long, "L") if name.startswith(long) and long not in text else name
 
 
 def several(text: str, entry: str) -> dict[str, str]:

@@ -113,3 +113,43 @@ def test_what_is_wrong_behind_such_words_is_told():
     assert not judged("M12", "k := m2 l2; M12 = k (l2 + l1 s2)").agrees
     with pytest.raises(ExpressionError):
         judged("V", "m1 g h1 and m2 g h2")
+
+
+# -------- L is a name of the writer's where he explains it
+
+OF_SPATIAL = "a1*c1 + a2*c12 + L3*c12*c3"
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "text"),
+    [
+        ("isotropic", "A1", "L = 0.3; A1 = 2*L*(e - x)"),
+        ("isotropic", "A1", "A1 = 2*L*(e - x), where L = 0.3"),
+        ("spatial3r", "x", f"L3 = 0.3; x = {OF_SPATIAL}"),
+        ("spatial3r", "x", r"L_3 = 0.3; x = a_1 c_1 + a_2 c_{12} + L_3 c_{12} c_3"),
+        ("spatial3r", "x", "L_1 = 0.45; L_3 = 0.3; x = L_1*c1 + a_2*c_12 + L_3*c_12*c3"),
+        ("planar2r", "V", "L = 0.5; V = m1*g*L*s1 + m2*g*(L*s1 + l2*s12)"),
+    ],
+)
+def test_l_where_it_is_explained(robot, entry, text):
+    agrees(entry, text, robot)
+    assert not judged(entry, text.replace("0.3", "0.4").replace("m2*g", "m1*g"), robot).agrees
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "text", "said"),
+    [
+        ("isotropic", "A1", "A1 = 2*L*(e - x)", "'L' is unknown"),
+        ("spatial3r", "x", f"x = {OF_SPATIAL}", "'L3' is unknown"),
+        ("spatial3r", "x", "L3 = 0.3; x = L1*c1 + a2*c12 + L3*c12*c3", "'L1' is unknown"),
+    ],
+)
+def test_l_where_it_is_not_explained_is_refused(robot, entry, text, said):
+    with pytest.raises(ExpressionError, match=said):
+        judged(entry, text, robot)
+
+
+def test_the_lagrangian_is_an_entry_as_before():
+    energies = "T = m1*l1^2*qd1^2/2; V = m1*g*l1*s1"
+    assert judged("L", f"L = T - V; {energies}").function == "lagrangian"
+    assert judged("V", "L = T - U; V = m1*g*l1*s1 + m2*g*(l1*s1 + l2*s12)").agrees
