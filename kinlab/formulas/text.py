@@ -509,7 +509,8 @@ def _plain(
         for name, value in symbols.items()
         if isinstance(value, str)
     }
-    return formulas, _as_read(symbols | explained, formulas.values(), explained.values())
+    named = {typed.square_of(name): value for name, value in (symbols | explained).items()}
+    return formulas, _as_read(named, formulas.values(), explained.values())
 
 
 def _as_read(

@@ -171,7 +171,7 @@ def plain_formula(text: str, place: str = "expression", writing: Hand | None = N
     else:
         text = _waves_apart(_plain_signs(text, place), place, writing)
         text = with_products(_without_indices(text, place, writing), _FUNCTIONS, place)
-    return _capitals(text, place, writing)
+    return _with_squares(_capitals(text, place, writing), place, writing)
 
 
 _OF_ONE_LETTER = r"sin|cos|tan|sqrt|lc[₀-₉]+|[^\W\d_][\u0307\u0308]?(?:_?\d+|[₀-₉]+)?"
@@ -312,6 +312,35 @@ def _waves_apart(text: str, place: str, writing: Hand) -> str:
         return (number or "") + " ".join(waves)
 
     return _WAVES.sub(apart, text)
+
+
+_SQUARED = "^2"
+_NUMBERED = re.compile(r"([A-Za-z]+)(\d*)")
+_TWO = r"\s*(?:\*\*|\^)\s*(?:2|\(2\))(?![\w.]|\s*(?:\*\*|\^))"
+
+
+def square_of(name: str) -> str:
+    """What the square of a name is called in plain text: v2_squared of v2^2; others stay."""
+    return f"{name.removesuffix(_SQUARED)}_squared" if name.endswith(_SQUARED) else name
+
+
+def _with_squares(text: str, place: str, writing: Hand) -> str:
+    """``v2**2`` as v2_squared where the writer explains v2^2 and not v2.
+
+    Raises:
+        ExpressionError: v2 stands there without its square.
+    """
+    for square in sorted(one for one in writing.known if one.endswith(_SQUARED)):
+        name = square.removesuffix(_SQUARED)
+        found = _NUMBERED.fullmatch(name)
+        if found is None:
+            continue
+        alone = rf"(?<![\w.]){found[1]}_?{found[2]}(?!\w)"
+        text = re.sub(alone + _TWO, square_of(square), text)
+        if name not in writing.known and re.search(alone, text):
+            said = N_("{name} stands alone, and only {square} is explained; explain {name}")
+            raise refused(place, said, name=name, square=square)
+    return text
 
 
 def _small(found: re.Match[str]) -> str:
@@ -481,7 +510,7 @@ def sides(text: str, place: str = "expression") -> tuple[str, str]:
     return left, f"${right}$" if typeset else right
 
 
-_NAMED_NEXT = r"(?=[\\\w{}]{1,40}(?:\(q\))?\s*&?\s*:?=)"
+_NAMED_NEXT = r"(?=[\\\w{}]{1,40}(?:\(q\)|\^\{?2\}?|\*\*2)?\s*&?\s*:?=)"
 _AND = r"(?:and|和|且)(?=\s)"
 _SPACES = r"\s|~|\\[,;:! ]|\\q?quad(?![A-Za-z])"
 _NEXT = re.compile(
@@ -519,7 +548,7 @@ def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
     if not own or any(line.count("=") != 1 for line in lines[:-1]):
         return {}, text
     left = lines[-1].partition("=")[0] if "=" in lines[-1] else ""
-    if not all(_OWN_NAME.fullmatch(name.strip("& ")) for name, *_rest in own):
+    if not all(_is_own_name(name.strip("& ")) for name, *_rest in own):
         return {}, text
     if entry and left and not of_one_name(entry_name(left), entry_name(entry)):
         return {}, text
@@ -528,8 +557,29 @@ def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
     return formulas, f"{dollars}{lines[-1]}{dollars}"
 
 
+_SQUARE = re.compile(r"(.*?)\s*(?:(?:\^|\*\*)\s*(?:2|\{\s*2\s*\})|²)")
+_STATE = re.compile(r"(?:[csCS]|(?:q|th|theta)d{0,2}|d{1,2}(?:q|th|theta))_?\d+")
+
+
+def _is_own_name(text: str) -> bool:
+    """Whether a left side may be a name of the writer's, or the square of one: not of c2 or q2."""
+    square = _SQUARE.fullmatch(text)
+    if square is None:
+        return bool(_OWN_NAME.fullmatch(text))
+    with suppress(ExpressionError):
+        name = entry_name(square[1])
+        return bool(_NUMBERED.fullmatch(name)) and not _STATE.fullmatch(name)
+    return False
+
+
 def _own_name(text: str) -> str:
-    """A name that is explained: L3 of ``L3 = 0.3``, for L is the Lagrangian only as an entry."""
+    """A name that is explained: L3 of ``L3 = 0.3``, for L is the Lagrangian only as an entry.
+
+    Of ``v_2^2 = ...`` it is v2^2.
+    """
+    square = _SQUARE.fullmatch(text.strip("& "))
+    if square:
+        return f"{_own_name(square[1])}{_SQUARED}"
     name, long = entry_name(text), _PRINTED["L"]
     return name.replace(long, "L") if name.startswith(long) and long not in text else name
 

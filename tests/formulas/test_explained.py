@@ -153,3 +153,55 @@ def test_the_lagrangian_is_an_entry_as_before():
     energies = "T = m1*l1^2*qd1^2/2; V = m1*g*l1*s1"
     assert judged("L", f"L = T - V; {energies}").function == "lagrangian"
     assert judged("V", "L = T - U; V = m1*g*l1*s1 + m2*g*(l1*s1 + l2*s12)").agrees
+
+
+# -------- A square that is explained
+
+V2 = "l1^2*qd1^2 + l2^2*(qd1+qd2)^2 + 2*l1*l2*c2*qd1*(qd1+qd2)"
+V2_LATEX = (
+    r"l_1^2 \dot q_1^2 + l_2^2(\dot q_1+\dot q_2)^2 + 2 l_1 l_2 c_2 \dot q_1(\dot q_1+\dot q_2)"
+)
+WHERE = rf", \quad \text{{where }} v_1 = l_1 \dot q_1, v_2^2 = {V2_LATEX}"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"v1 = l1*qd1; v2^2 = {V2}; T = m1*v1^2/2 + m2*v2^2/2",
+        f"v_1**2 = l1^2*qd1^2; v_2**2 = {V2}; T = (m1*v_1**2 + m2*v_2**2)/2",
+        rf"T = \frac12 m_1 v_1^2 + \frac12 m_2 v_2^2{WHERE}",
+        rf"\frac12 m_1 v_1^2 + \frac12 m_2 v_2^{{2}}{WHERE}",
+        "v₁² = l₁²θ̇₁²; v₂² = l₁²θ̇₁² + l₂²(θ̇₁+θ̇₂)² + 2l₁l₂cos(θ₂)θ̇₁(θ̇₁+θ̇₂); T = ½m₁v₁² + ½m₂v₂²",
+        f"v2^2 = {V2}; T2 = m2*v2^2/2; T = m1*l1^2*qd1^2/2 + T2",
+        f"v2^2 = {V2}; v2 = sqrt(v2^2); T = m1*l1^2*qd1^2/2 + m2*v2*v2/2",
+    ],
+)
+def test_a_square_that_is_explained(text):
+    agrees("T", text)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (f"v2^2 = {V2}; T = m1*l1^2*qd1^2/2 + m1*v2^2/2", "+ m2*v2^2/2"),
+        (f"v2^2 = {V2.replace('c2', 's2')}; T = m1*l1^2*qd1^2/2 + m2*v2^2/2", "s2 should be c2"),
+    ],
+)
+def test_what_is_wrong_with_such_a_square_is_told(text, said):
+    found = judged("T", text)
+    assert not found.agrees and said in str(found)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (f"v2^2 = {V2}; T = m1*l1^2*qd1^2/2 + m2*v2*v2/2", "v2 stands alone, and only v2\\^2"),
+        (f"v2^2 = {V2}; T = m1*l1^2*qd1^2/2 + m2*v2^3/2", "v2 stands alone"),
+        ("T = m2*v2^2/2", "'v2' is unknown"),
+        ("c2^2 = 1 - s2^2; T = m1*c2^2", "T: "),
+        ("q1^2 = m1; T = m1*q1^2", "T: "),
+    ],
+)
+def test_a_name_of_which_only_the_square_is_explained_is_refused(text, said):
+    with pytest.raises(ExpressionError, match=said):
+        judged("T", text)
