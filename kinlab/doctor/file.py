@@ -27,6 +27,7 @@ from kinlab.doctor.text.own_names import (
     as_distances,
     constants_named,
     in_robot_names,
+    with_underscores,
     written_as,
 )
 from kinlab.doctor.text.written import Written
@@ -126,7 +127,7 @@ def _of_chain(parts: list[Diagnosis]) -> Diagnosis:
 
 def _examined(file: FormulaFile, robot: Mechanism, samples: int, seed: int) -> list[Diagnosis]:
     given = {*file.symbols}
-    file = with_habits(with_forces(file, robot), robot)
+    file = _with_names(file, robot)
 
     def judged(other: FormulaFile) -> list[Diagnosis]:
         done = _by_quantity(other, robot, samples, seed)
@@ -144,6 +145,11 @@ def _examined(file: FormulaFile, robot: Mechanism, samples: int, seed: int) -> l
         pairs = zip(found, judged(away), strict=True)
         found = [_by_distances(one, other, file, said) for one, other in pairs]
     return found
+
+
+def _with_names(file: FormulaFile, robot: Mechanism) -> FormulaFile:
+    """The formulas with a meaning for each name that has one elsewhere in them, or by habit."""
+    return with_habits(with_forces(with_underscores(file, robot), robot), robot)
 
 
 def _by_distances(
@@ -289,7 +295,7 @@ def require_sound(file: FormulaFile, robot: Mechanism) -> dict[str, str]:
     """
     file = as_judged(file, robot)
     for part in (*file.others, file):
-        part = with_habits(with_forces(part, robot), robot)
+        part = _with_names(part, robot)
         wanted, titles = _claims(part, robot)
         for plain, formulas in wanted.items():
             _answers(plain, formulas, titles, robot, part, _FEWEST, 0)

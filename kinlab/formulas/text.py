@@ -146,7 +146,8 @@ def formula_file(
         own, entries[key] = typed.explained(_text(value, f"{place}: {key}"), key)
         used = _SIGNS.sub("", " ".join([*own.values(), entries[key]]))
         for name, formula in own.items():
-            if name not in used and not _readable(formula):
+            unused = name not in used or name[0] == "L"
+            if unused and not _readable(formula):
                 continue  # beside the formula, and not used in it
             if symbols.setdefault(name, formula) != formula:
                 said = N_(
@@ -508,7 +509,8 @@ def _plain(
         for name, value in symbols.items()
         if isinstance(value, str)
     }
-    return formulas, _as_read(symbols | explained, formulas.values(), explained.values())
+    named = {typed.square_of(name): value for name, value in (symbols | explained).items()}
+    return formulas, _as_read(named, formulas.values(), explained.values())
 
 
 def _as_read(

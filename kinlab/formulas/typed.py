@@ -16,14 +16,17 @@ from dataclasses import dataclass
 from kinlab.errors import ExpressionError
 from kinlab.formulas.signs import latex
 from kinlab.formulas.signs.beside import with_products
+from kinlab.formulas.signs.degrees import in_radians
 from kinlab.formulas.signs.refusals import refused
 from kinlab.formulas.signs.remarks import without_remarks
-from kinlab.host.language import N_
+from kinlab.host.language import N_, _
 
 # -------- Which writing it is
 
 _LATEX = re.compile(r"\\[A-Za-z]|\$|[_^]\{")
-_PREFIX = re.compile(r"(?<![\w.])(?:np|numpy|math|sp|sympy)\.(?=[A-Za-z])")
+_MODULES = "np|numpy|math|Math|sp|sympy"
+_PREFIX = re.compile(rf"(?<![\w.])(?:{_MODULES})\.(?=[A-Za-z])")
+_CONSTANT = re.compile(r"(?<![\w.])Math\.PI(?!\w)")
 _BRACKETS = re.compile(r"(?<![\w.])([A-Za-z]\w*)\s*\[\s*(-?\d+)\s*\]")
 _INDEXED = re.compile(r"(?<![\w.])([A-Za-z]\w*)\(\s*(\d+)\s*\)")
 _UPPER = re.compile(r"(?<![\w.])([CS])_?([1-9]+)(?!\w)")
@@ -157,22 +160,23 @@ def plain_formula(text: str, place: str = "expression", writing: Hand | None = N
     """
     writing = hand([text]) if writing is None else writing
     typeset = is_latex(text)
-    text = _PRIMED.sub(_rate, bare(text))
+    text = _CAPITAL_FUNCTION.sub(_small, _PRIMED.sub(_rate, bare(text)))
+    text = in_radians(text, "pi" if text.isascii() and not typeset else "π", calls=not typeset)
     if not typeset and _side_by_side(text, writing):
         text = _CENTRE.sub(lambda m: f"l_{{c{m[1].translate(_BELOW)}}}", text)
         typeset, text = True, text.replace("**", "^")
     text = ascii_text(text, place, as_latex=typeset)
     if typeset:
-        text = latex.expression(text, place)
+        text = latex.expression(text, place, known=writing.known)
     else:
-        text = _plain_signs(text, place)
+        text = _waves_apart(_plain_signs(text, place), place, writing)
         text = with_products(_without_indices(text, place, writing), _FUNCTIONS, place)
-    return _capitals(text, place, writing)
+    return _with_squares(_capitals(text, place, writing), place, writing)
 
 
 _OF_ONE_LETTER = r"sin|cos|tan|sqrt|lc[₀-₉]+|[^\W\d_][\u0307\u0308]?(?:_?\d+|[₀-₉]+)?"
 _OF_LETTERS = (
-    r"(?:(?:np|numpy|math|sp|sympy)\.)?[^\W\d][^\W⁰¹²³⁴-⁹½]*[\u0307\u0308]?[^\W⁰¹²³⁴-⁹½]*"
+    rf"[csCS]\d+(?=(?:[csCS]\d+)+(?!\w))|(?:(?:{_MODULES})\.)?[^\W\d][^\W⁰¹²³⁴-⁹½]*[\u0307\u0308]?[^\W⁰¹²³⁴-⁹½]*"
     r"(?:\(\s*\d+\s*\)|\[\s*\d+\s*\])?['′″]*"
 )
 _REST = r"|[⁰¹²³⁴-⁹]|\d+\.?\d*(?:[eE][+-]?\d+)?|[-+−–]"
@@ -187,9 +191,10 @@ def leaves_of(text: str, place: str, writing: Hand, typeset: bool) -> list[latex
         typeset: whether there were dollars around it.
     """
     found: list[latex.Leaf] = []
+    text = _CAPITAL_FUNCTION.sub(_small, text)
     typeset = typeset or _side_by_side(text, writing)
     if typeset and text.isascii():
-        latex.expression(text.replace("**", " ^"), place, found)
+        latex.expression(text.replace("**", " ^"), place, found, writing.known)
         return found
     for piece in re.finditer((_OF_ONE_LETTER if typeset else _OF_LETTERS) + _REST, text):
         plain = piece.group().translate(_ABOVE)
@@ -263,12 +268,12 @@ def bare(text: str) -> str:
 
 
 _POWER = re.compile(r"(?<![\w.])(?:power|pow)\s*(?=\()")
-_MATHEMATICA = re.compile(r"(?<![\w.])(?:Sin|Cos|Tan|Sqrt|Abs)(?=\()")
+_CAPITAL_FUNCTION = re.compile(r"(?<![\w.\\])[A-Z][A-Za-z]+2?(?=\s*\()")
 _DEGREES = re.compile(r"(?<![\w.])a?(sin|cos|tan)d\s*\(")
 
 
 def _plain_signs(text: str, place: str) -> str:
-    text = _MATHEMATICA.sub(lambda found: found[0].lower(), _PREFIX.sub("", text))
+    text = _PREFIX.sub("", _CONSTANT.sub("pi", text))
     text = _with_powers(_ELEMENTWISE.sub(r"\1", text))
     if found := _DEGREES.search(text):
         raise refused(
@@ -286,6 +291,63 @@ def _plain_signs(text: str, place: str) -> str:
             ),
         )
     return text
+
+
+_WAVES = re.compile(r"(?<![\w.])(\d*\.?\d+)?((?:[cs]\d+){2,}|(?:[CS]\d+){2,})(?!\w)")
+_WAVE = re.compile(r"[csCS]\d+")
+
+
+def _waves_apart(text: str, place: str, writing: Hand) -> str:
+    """``5.89s1s2`` as ``5.89s1 s2``, a product of sines and cosines, unless s1s2 is a name."""
+
+    def apart(found: re.Match[str]) -> str:
+        number, name = found.groups()
+        if name in writing.known:
+            return found[0]
+        waves, behind = _WAVE.findall(name), text[found.end() :].lstrip()
+        if behind[:1] == "^" or behind[:2] == "**":
+            remedy = _("{call}, with parentheses").format(call="*".join(waves))
+            said = N_("{what} can be read in two ways; write {remedy}")
+            raise refused(place, said, what=f"{name}^", remedy=remedy)
+        return (number or "") + " ".join(waves)
+
+    return _WAVES.sub(apart, text)
+
+
+_SQUARED = "^2"
+_NUMBERED = re.compile(r"([A-Za-z]+)(\d*)")
+_TWO = r"\s*(?:\*\*|\^)\s*(?:2|\(2\))(?![\w.]|\s*(?:\*\*|\^))"
+
+
+def square_of(name: str) -> str:
+    """What the square of a name is called in plain text: v2_squared of v2^2; others stay."""
+    return f"{name.removesuffix(_SQUARED)}_squared" if name.endswith(_SQUARED) else name
+
+
+def _with_squares(text: str, place: str, writing: Hand) -> str:
+    """``v2**2`` as v2_squared where the writer explains v2^2 and not v2.
+
+    Raises:
+        ExpressionError: v2 stands there without its square.
+    """
+    for square in sorted(one for one in writing.known if one.endswith(_SQUARED)):
+        name = square.removesuffix(_SQUARED)
+        found = _NUMBERED.fullmatch(name)
+        if found is None:
+            continue
+        alone = rf"(?<![\w.]){found[1]}_?{found[2]}(?!\w)"
+        text = re.sub(alone + _TWO, square_of(square), text)
+        if name not in writing.known and re.search(alone, text):
+            said = N_("{name} stands alone, and only {square} is explained; explain {name}")
+            raise refused(place, said, name=name, square=square)
+    return text
+
+
+def _small(found: re.Match[str]) -> str:
+    """A function's name in small letters: ``COS(``, ``Sqrt(``, ``Atan2(``."""
+    name = found[0]
+    known = name.lower() in _FUNCTIONS and name in (name.upper(), name.capitalize())
+    return name.lower() if known else name
 
 
 def _with_powers(text: str) -> str:
@@ -448,16 +510,22 @@ def sides(text: str, place: str = "expression") -> tuple[str, str]:
     return left, f"${right}$" if typeset else right
 
 
-_NAMED_NEXT = r"(?=[\\\w{}]{1,40}(?:\(q\))?\s*&?\s*:?=)"
+_NAMED_NEXT = r"(?=[\\\w{}]{1,40}(?:\(q\)|\^\{?2\}?|\*\*2)?\s*&?\s*:?=)"
+_AND = r"(?:and|和|且)(?=\s)"
 _SPACES = r"\s|~|\\[,;:! ]|\\q?quad(?![A-Za-z])"
 _NEXT = re.compile(
-    rf"(\n|(?<!\\);|\\\\(?:\[[^\]]*\])?|(?:(?<!\\),|\\q?quad(?![A-Za-z])|\\text\s*\{{\s*(?:and|和|且))"
-    rf"(?:\s*\}}|\\text\s*\{{\s*(?:and|和|且)\s*\}}|{_SPACES}){{0,20}}+{_NAMED_NEXT})"
+    r"(\n|(?<!\\);|\\\\(?:\[[^\]]*\])?|(?:(?<!\\),|\\q?quad(?![A-Za-z])"
+    rf"|\\text\s*\{{\s*(?:and|和|且)|(?<=\s){_AND})"
+    rf"(?:\s*\}}|\\text\s*\{{\s*(?:and|和|且)\s*\}}|{_AND}|{_SPACES}){{0,20}}+{_NAMED_NEXT})"
 )
-"""What ends an equation: the end of a line, a semicolon, a comma before the next name."""
-_WHERE = re.compile(r"[,;]?\s*(?:\\q?quad\s*)?(?:\\text\{\s*(?:where|with)\s*\}|\bwhere\b)\s*")
+"""What ends an equation: a line's end, a semicolon, a comma or an "and" before the next name."""
+_WHERE = re.compile(
+    r"[,;]?\s*(?:\\q?quad\s*)?(?:\\text\{\s*(?:where|with)\s*\}|\bwhere\b"
+    rf"|(?<=[\s,;])with\s+{_NAMED_NEXT})\s*"
+)
 """What stands between a formula and what is explained behind it."""
 _GOES_ON = re.compile(r"(?<=[-+*/^=(,])\s*\n|\n(?=\s*[-+*/^=),])")
+_DEFINED = re.compile(r":\s*=|\\coloneqq(?![A-Za-z])")
 _SIGNED = re.compile(r"[&\s]*[-+*/]")
 _OWN_NAME = re.compile(r"[\\\w{} ]+")
 _NAME = re.compile(r"[A-Za-z]\w*(?:\[[\d,]+\])?")
@@ -480,13 +548,40 @@ def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
     if not own or any(line.count("=") != 1 for line in lines[:-1]):
         return {}, text
     left = lines[-1].partition("=")[0] if "=" in lines[-1] else ""
-    if not all(_OWN_NAME.fullmatch(name.strip("& ")) for name, *_rest in own):
+    if not all(_is_own_name(name.strip("& ")) for name, *_rest in own):
         return {}, text
     if entry and left and not of_one_name(entry_name(left), entry_name(entry)):
         return {}, text
     dollars = "$" if is_latex(text) else ""
-    formulas = {entry_name(name): f"{dollars}{bare(right)}{dollars}" for name, _sign, right in own}
+    formulas = {_own_name(name): f"{dollars}{bare(right)}{dollars}" for name, _sign, right in own}
     return formulas, f"{dollars}{lines[-1]}{dollars}"
+
+
+_SQUARE = re.compile(r"(.*?)\s*(?:(?:\^|\*\*)\s*(?:2|\{\s*2\s*\})|²)")
+_STATE = re.compile(r"(?:[csCS]|(?:q|th|theta)d{0,2}|d{1,2}(?:q|th|theta))_?\d+")
+
+
+def _is_own_name(text: str) -> bool:
+    """Whether a left side may be a name of the writer's, or the square of one: not of c2 or q2."""
+    square = _SQUARE.fullmatch(text)
+    if square is None:
+        return bool(_OWN_NAME.fullmatch(text))
+    with suppress(ExpressionError):
+        name = entry_name(square[1])
+        return bool(_NUMBERED.fullmatch(name)) and not _STATE.fullmatch(name)
+    return False
+
+
+def _own_name(text: str) -> str:
+    """A name that is explained: L3 of ``L3 = 0.3``, for L is the Lagrangian only as an entry.
+
+    Of ``v_2^2 = ...`` it is v2^2.
+    """
+    square = _SQUARE.fullmatch(text.strip("& "))
+    if square:
+        return f"{_own_name(square[1])}{_SQUARED}"
+    name, long = entry_name(text), _PRINTED["L"]
+    return name.replace(long, "L") if name.startswith(long) and long not in text else name
 
 
 def several(text: str, entry: str) -> dict[str, str]:
@@ -500,7 +595,8 @@ def several(text: str, entry: str) -> dict[str, str]:
         Each with the equations that explain the writer's own names; empty where none, or only
         one, is an entry of the whole.
     """
-    lines = [line for line in _equations(text) if "=" in line]
+    cut = _equations(text)
+    lines = [line for line in cut if "=" in line]
     named: dict[str, str] = {}
     own: list[str] = []
     with suppress(ExpressionError):
@@ -514,10 +610,17 @@ def several(text: str, entry: str) -> dict[str, str]:
                 named[name] = line
             else:
                 own.append(line)
-    if len(named) < 2:
+    if len(named) < 2 or (entry in _ONE_NUMBER and _uses(named, cut)):
         return {}
     dollars = "$" if is_latex(text) else ""
     return {name: f"{dollars}{'; '.join([*own, line])}{dollars}" for name, line in named.items()}
+
+
+def _uses(names: Iterable[str], lines: Iterable[str]) -> bool:
+    """Whether a line without a left side is made of one of the names: it is what is asked for."""
+    bare_names = "|".join(map(re.escape, names))
+    lines = (re.sub(r"[_{}\\]", "", one.translate(_BELOW)) for one in lines if "=" not in one)
+    return any(re.search(rf"(?:{bare_names})(?!\d)", one) for one in lines)
 
 
 _STARTS_FORMULA = re.compile(r"^[-(\d.]")
@@ -569,7 +672,7 @@ def _is_formula(text: str) -> bool:
 def _is_name(text: str) -> bool:
     """Whether a side of an equation is a name alone: ``M_{21}``, ``\\tau_2``, not ``-y``."""
     with suppress(ExpressionError):
-        return bool(_NAME.fullmatch(entry_name(text.strip("& "))))
+        return "∂" not in text and bool(_NAME.fullmatch(entry_name(text.strip("& "))))
     return False
 
 
@@ -631,7 +734,7 @@ def _equations(text: str) -> list[str]:
     What is explained behind a comma, or behind ``where``, comes before what it stands behind.
     """
     lines = [[""]]
-    pieces = _NEXT.split(_GOES_ON.sub(" ", bare(text)))
+    pieces = _NEXT.split(_GOES_ON.sub(" ", _DEFINED.sub("=", bare(text))))
     for k, piece in enumerate(pieces):
         last = lines[-1][-1]
         depth = sum(last.count(c) for c in "([{") - sum(last.count(c) for c in ")]}")
@@ -654,6 +757,11 @@ _DETERMINANT = re.compile(r"\\det\s*(?:\(?\s*J\s*\)?)?|\|\s*J\s*\|")
 """The determinant of J as it is typed."""
 
 
+_DERIVATIVE = re.compile(r"∂\s*([VUPxy])\s*/\s*∂\s*(?:q|th|theta|θ)_?\{?([1-9])\}?")
+_DERIVED = {"V": "g", "U": "g", "P": "g", "x": "J1", "y": "J2"}
+"""What the derivative of something by a joint's position is called."""
+
+
 def entry_name(text: str, place: str = "expression", writing: Hand | None = None) -> str:
     r"""The name on a left side: ``\tau_{2}``, ``τ₂``, ``tau(2)`` and ``tau_2`` are tau2.
 
@@ -670,6 +778,9 @@ def entry_name(text: str, place: str = "expression", writing: Hand | None = None
     typed = _IN_BASE.sub("", _OF_STATE.sub("", bare(text).strip("& ")).strip())
     if _DETERMINANT.fullmatch(typed):
         return "det J"
+    if "∂" in typed:
+        found = _DERIVATIVE.fullmatch(unicodedata.normalize("NFKC", typed))
+        return f"{_DERIVED[found[1]]}{found[2]}" if found else typed
     named = _NAMED.fullmatch(typed)
     if named and (not named[2] or named[1] == "fk" or "_" in named[1] or named[1] in LONG):
         return typed  # a quantity by its own name
@@ -705,6 +816,9 @@ _MEANT = tuple({word.lower() for word in group.split()} for group in _IN_BOOKS)
 _POSES = {"t", "a", "h", "fk"}
 _POINT = {"x": "14", "y": "24", "z": "34", "px": "14", "py": "24", "pz": "34"}
 """Which entries of a pose the coordinates of its point are."""
+_ONE_NUMBER = {*"VPUTKL", "Ep", "Ek"}
+_ONE_NUMBER |= {"potential", "kinetic", "potential_energy", "kinetic_energy", "lagrangian"}
+"""Entries that are one number by themselves, though V1 and V2 are parts of a vector."""
 _VECTORS = "gravity_torques inverse_dynamics coriolis_torques momentum statics statics_tool"
 _MATRICES = "mass_matrix coriolis_matrix jacobian jacobian_tool jacobian_spatial fk planar_jacobian"
 LONG = {*_MATRICES.split(), *_VECTORS.split()}

@@ -488,6 +488,8 @@ def test_products_that_are_none_are_refused(text, said):
         r"\,",
         "其中",
         "; a = 1",
+        r"\underbrace{",
+        r"\underbrace{a}_{b}",
     ],
 )
 def test_what_is_typed_without_end_is_refused_soon(piece):
@@ -517,3 +519,38 @@ def test_no_name_of_a_robot_is_a_product_of_its_letters():
     for name in vocabulary(table).values:
         text = f"l₁ + {name}"
         assert name in plain_formula(text).replace(" ", ""), name
+
+
+# -------- Braces with a remark
+
+FIRST = r"\underbrace{(m_1+m_2) g l_1 c_1}_{\text{link 1}}"
+
+
+@pytest.mark.parametrize(
+    ("entry", "text"),
+    [
+        ("g2", r"\underbrace{m_2 g l_2 c_{12}}_{\text{gravity} = g_2}"),
+        ("g1", rf"{FIRST} + \underbrace{{m_2 g l_2 c_{{12}}}}_\text{{2}}"),
+        ("g1", r"g_1 = \underbrace{m_1 g l_1 c_1 + m_2 g l_1 c_1}_{a} + \overbrace{m_2 g l_2 c_{12}}^{g_2}"),
+        ("g2", r"m_2 g l_2 \underbrace{(c_1 c_2 - s_1 s_2)}_{c_{12}}"),
+        ("g2", r"\underbrace{\underbrace{m_2 g}_{F} l_2}_{a} c_{12}"),
+    ],
+)  # fmt: skip
+def test_braces_with_a_remark_are_left_out(entry, text):
+    assert diagnosed(entry, text).agrees
+    assert not diagnosed(entry, text.replace("m_2 g", "m_1 g", 1)).agrees
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        r"m_2 g l_2 \underbrace{c_1 c_2 - s_1 s_2}_{c_{12}}",
+        r"-\underbrace{m_2 g + m_1}_{a}",
+        r"\underbrace{m_2 g}_2 l_2",
+        r"\underbrace{m_2 g}_{a}^2 l_2",
+        r"\underbrace{m_2 g}^{2} l_2",
+    ],
+)
+def test_braces_around_what_may_be_read_otherwise_are_refused(text):
+    with pytest.raises(ExpressionError, match="brace"):
+        diagnosed("g2", text)

@@ -50,6 +50,48 @@ def in_robot_names(text: Node, file: FormulaFile, robot: Mechanism, entry: str) 
     return _resolved(text, file, words, known, place)
 
 
+def with_underscores(file: FormulaFile, robot: Mechanism) -> FormulaFile:
+    """The formulas with V_1 as what the writer explains as V1, unless that is the same by habit.
+
+    Args:
+        file: the formulas as they were read; of ``V_1 = ...`` the name is V1.
+        robot: whose they are.
+    """
+    nodes = (*file.formulas.values(), *file.symbols.values())
+    used = {name for node in nodes for name in tree.names(node)}
+    words = named_numbers(robot)
+    symbols, texts = dict(file.symbols), dict(file.symbol_texts)
+    for name in sorted(used - {*file.symbols}):
+        plain = name.replace("_", "")
+        given = symbols.get(plain)
+        if given is None or _by_habit(name, given, words) or name in _made_of(given, file):
+            continue
+        if plain in used or plain in words:
+            symbols[name], texts[name] = tree.sym(plain), plain
+        else:
+            symbols[name], texts[name] = symbols.pop(plain), texts.pop(plain)
+    return replace(file, symbols=symbols, symbol_texts=texts)
+
+
+def _by_habit(name: str, given: Node, words: dict[str, float]) -> bool:
+    """Whether what a writer explains a name by is what it means anyway: ``l_1 = 0.5``."""
+    meant = canonical(name)
+    if given.op == "num" and meant.value in words:
+        return may_be(_digits(given), words[str(meant.value)])
+    return tree.renamed(given, {word: canonical(word) for word in tree.names(given)}) == meant
+
+
+def _made_of(text: Node, file: FormulaFile) -> set[str]:
+    """Every name in a text and in what stands behind its names."""
+    found: set[str] = set()
+    waiting = {*tree.names(text)}
+    while waiting:
+        found |= waiting
+        inner = (file.symbols[name] for name in waiting if name in file.symbols)
+        waiting = {name for node in inner for name in tree.names(node)} - found
+    return found
+
+
 def as_distances(
     file: FormulaFile, robot: Mechanism, given: Collection[str]
 ) -> tuple[FormulaFile, dict[str, str]]:

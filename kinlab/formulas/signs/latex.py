@@ -42,7 +42,11 @@ _NAME = re.compile(r"[A-Za-z][A-Za-z0-9]*")
 _PLAIN = re.compile(r"\d+(?:\.\d+)?|pi")
 _LETTERS = "alpha beta gamma delta theta Theta lambda mu phi psi omega rho tau"
 _GREEK = {rf"\{name}": name for name in _LETTERS.split()}
+_GREEK[r"\pi"] = "pi"
 _GREEK |= {rf"\var{name}": name for name in ("theta", "phi", "rho")}
+_THETAS = ([r"\theta"], [r"\vartheta"])
+_JOINTS = "123456789"
+"""The joints whose angles a sum of angles has, ascending and without a gap."""
 _OF_TOOL = ("x", "y")
 """Coordinates of the tool, whose rates a five-bar's formulas have."""
 _DOTS = {r"\dot": "d", r"\ddot": "dd"}
@@ -61,7 +65,12 @@ class Leaf:
     end: int
 
 
-def expression(text: str, place: str = "expression", leaves: list[Leaf] | None = None) -> str:
+def expression(
+    text: str,
+    place: str = "expression",
+    leaves: list[Leaf] | None = None,
+    known: frozenset[str] = frozenset(),
+) -> str:
     """Plain text of a LaTeX formula: ``m_1 l_1^2 \\ddot{q}_1`` gives ``m1*l1**2*qdd1``.
 
     Args:
@@ -70,6 +79,7 @@ def expression(text: str, place: str = "expression", leaves: list[Leaf] | None =
             ``\\mathrm`` and its like, ``\\dot`` and ``\\ddot`` over q or theta.
         place: what to put in front of a message.
         leaves: gets every leaf, in the order of the text.
+        known: names that the writer explains.
 
     Raises:
         ExpressionError: too long, nested too deep, a command that is none of these, or what two
@@ -100,7 +110,7 @@ def expression(text: str, place: str = "expression", leaves: list[Leaf] | None =
         tight.append(glued)
         spans.append(found.span())
         glued = True
-    reader = _Reader(tokens, tight, spans, place)
+    reader = _Reader(tokens, tight, spans, place, known)
     result = reader.sum()
     if reader.next:
         raise reader.unread()
@@ -118,13 +128,19 @@ class _Reader:
     """Walks the tokens from left to right, one method for each level of binding."""
 
     def __init__(
-        self, tokens: list[str], tight: list[bool], spans: list[tuple[int, int]], place: str
+        self,
+        tokens: list[str],
+        tight: list[bool],
+        spans: list[tuple[int, int]],
+        place: str,
+        known: frozenset[str],
     ) -> None:
         self.tokens = tokens
         self.tight = tight
         self.spans = spans
         self.leaves: list[Leaf] = []
         self.place = place
+        self.known = known
         self.at = 0
         self.depth = 0
         self.bare = -1
@@ -320,9 +336,31 @@ class _Reader:
             return self.function()
         if token[:1].isdigit():
             return self.single()
-        if token == r"\pi":
+        if token == r"\pi" and self.tokens[self.at + 1 : self.at + 2] != ["_"]:
             return self.leaf(self.take()[1:], self.at - 1)
-        return self.name()
+        return self.wave() or self.name()
+
+    def wave(self) -> str:
+        r"""``c\theta_{12}`` as c12, or nothing where c is a name of the writer's."""
+        letter = _word(self.next) or self.next
+        behind = self.tokens[self.at + 1 : self.at + 2]
+        if letter not in ("c", "s") or letter in self.known or behind not in _THETAS:
+            return ""
+        first, noted = self.at, len(self.leaves)
+        self.take()
+        angle = self.name()
+        joints = angle.removeprefix("theta")
+        del self.leaves[noted:]
+        if not joints or joints not in _JOINTS or angle in self.known:
+            self.at = first
+            return ""
+        if self.next == "^":
+            name = "cos" if letter == "c" else "sin"
+            raise self.unsure(
+                _("a power behind {text}").format(text=rf"{letter}\theta_{joints}"),
+                _(r"write \{name}^2(...), or parentheses around the angle").format(name=name),
+            )
+        return self.leaf(f"{letter}{joints}", first)
 
     def called(self) -> str:
         """The function that comes next, if one does."""

@@ -49,9 +49,60 @@ _EXPLAINED = re.compile(
 r"""``\quad (r = a_2 c_2)``, a name in parentheses."""
 
 
+_BRACE = re.compile(r"\\(under|over)brace\s*(?=\{)")
+_SAID = {
+    "under": re.compile(rf"\s*_\s*(?:{_WORDS}\s*)?(?=\{{)"),
+    "over": re.compile(rf"\s*\^\s*(?:{_WORDS}\s*)?(?=\{{)"),
+}
+_FRONT, _BEHIND_IT = re.compile(r"(?:^|[-+=(\[{&])\s*$"), re.compile(r"\s*(?:$|[-+=)\]},;&\n])")
+_MOST = 40
+
+
+def _without_braces(text: str) -> str:
+    r"""``\underbrace{X}_{Y}`` as X, unless X is a sum that may be a factor, or has a power."""
+    start = 0
+    for _ in range(_MOST):
+        found = _BRACE.search(text, start)
+        end = _closed(text, found.end()) if found else 0
+        if found is None or not end:
+            break
+        said = _SAID[found[1]].match(text, end)
+        behind = _closed(text, said.end()) if said else end
+        inside, before = text[found.end() + 1 : end - 1], text[: found.start()]
+        alone = _FRONT.search(before) and before.rstrip()[-1:] != "-"
+        raised = text[behind:].lstrip()[:1] in ("_", "^")
+        sure = not _is_sum(inside) or (alone and _BEHIND_IT.match(text, behind))
+        if behind and sure and not raised:
+            text = f"{before} {inside} {text[behind:]}"
+        else:
+            start = found.end()
+    return text
+
+
+def _closed(text: str, start: int) -> int:
+    """Behind the brace that closes the one at ``start``; 0 where none does."""
+    depth = 0
+    for k in range(start, len(text)):
+        depth += (text[k] == "{") - (text[k] == "}")
+        if depth == 0:
+            return k + 1
+    return 0
+
+
+def _is_sum(text: str) -> bool:
+    """Whether a sign stands outside of all brackets."""
+    depth = 0
+    for character in text:
+        depth += (character in "([{") - (character in ")]}")
+        if character in "+-" and depth == 0:
+            return True
+    return False
+
+
 @lru_cache(maxsize=1024)
 def without_remarks(text: str) -> str:
     """The text without what says nothing of the formula's value."""
+    text = _without_braces(text)
     for pattern, instead in _EVERYWHERE:
         text = pattern.sub(instead, text)
     for pattern in _AROUND:
