@@ -312,9 +312,10 @@ def test_what_is_wrong_only_near_the_limit_of_reach_is_seen(beyond: float) -> No
     assert not kl.diagnose("planar2r", XY, limited).agrees
 
 
-def test_rounded_answers_are_neither_right_nor_wrong_and_complex_ones_are_no_solution() -> None:
+def test_rounded_answers_are_right_to_their_digits_and_complex_ones_are_no_solution() -> None:
     rounded = kl.diagnose("planar2r", XY, lambda x, y: np.round(elbow_arm_of()(x, y, 1.0), 4))
-    assert (rounded.agrees, rounded.form) == (False, "near")
+    assert (rounded.agrees, rounded.form) == (True, "rounded")
+    assert "4 decimals" in str(rounded)
     off = lambda x, y: np.add(elbow_arm_of()(x, y, 1.0), 0.1j)  # noqa: E731
     told = kl.diagnose("planar2r", XY, off)
     assert not told.agrees

@@ -110,8 +110,8 @@ _OPENED = (
          {"b": ["m2 should be m3"], "G1": ["l1 should be lc1"]}),
         # both in what names stand for, of which one is seen in the shortest line alone
         ("planar3r", "G", "a = m3*g*lc3*cos(q3)\nb = (m2*lc2 + m2*l2)*g*cos(q1+q2)\nG = [(m1*lc1 + m2*l1 + m3*l1)*g*cos(q1) + b + a, b + a, a]",
-         {"a": ["cos(q3) should be cos(q1 + q2 + q3)"], "b": ["m2 should be m3"]}),
-        ("planar2r", "det", _OPENED.format(a="q2", b="sin"), {"det": ["sin(q2) should be sin(q1+q2)", "sin(q1) should be cos(q1)"]}),
+         {"a": ["cos(q3) should be cos(q1+q2+q3)"], "b": ["m2 should be m3"]}),
+        ("planar2r", "det", _OPENED.format(a="q2", b="sin"), {"J12": ["sin(q2) should be sin(q1+q2)"], "J21": ["sin(q1) should be cos(q1)"]}),
     ],
 )  # fmt: skip
 def test_two_slips_of_which_some_are_in_what_names_stand_for(robot, entry, typed, told) -> None:

@@ -94,7 +94,7 @@ def in_every_way(robot, quantity, text):
 
 
 def in_lanes(search, some):
-    states, each = search.states_at(search.first), [[edit] for edit in some]
+    states, each = search.asked.states_at(search.asked.first), [[edit] for edit in some]
     return InLanes(search.trial, search.observed, each, states, counts=False)
 
 
@@ -144,7 +144,7 @@ def test_a_lane_answers_as_the_edited_program(name) -> None:
                 continue
             try:
                 with changed(search.trial, (tried[i][0], tried[j][0])):
-                    right = search.answers(search.first)
+                    right = search.asked.answers(search.asked.first)
             except NoProgramError:
                 continue
             if right is not None and not np.isfinite(right).all():
@@ -195,7 +195,7 @@ def f(q):
 
 def test_a_program_is_left_as_it_was() -> None:
     search = in_every_way(*OTHERS["objects, recursion, a table in the module"])
-    before = search.answers(search.first)
+    before = search.asked.answers(search.asked.first)
     space, sizes = dict(search.trial.space), [len(nodes(tree)) for tree in search.trial.trees]
     with quietly():
         in_lanes(search, [edit for edit, _values in search.tried]).answers(
@@ -203,7 +203,7 @@ def test_a_program_is_left_as_it_was() -> None:
         )
     assert search.trial.space == space
     assert [len(nodes(tree)) for tree in search.trial.trees] == sizes
-    np.testing.assert_array_equal(search.answers(search.first), before)
+    np.testing.assert_array_equal(search.asked.answers(search.asked.first), before)
 
 
 def test_a_place_within_a_place() -> None:

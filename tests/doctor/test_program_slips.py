@@ -407,7 +407,7 @@ def dimensions(text):
     search = searched("planar2r_rods", "inverse_dynamics", text)
     names = [*search.case.arguments]
     return search, Dimensions(search.trial, search.observed, search.case.robot, names,
-                              search.states, alike=True)  # fmt: skip
+                              search.asked.states, alike=True)  # fmt: skip
 
 
 def test_dimensions_of_a_right_program_are_consistent() -> None:

@@ -9,6 +9,7 @@ import pytest
 from hand_programs import searched, written
 
 import kinlab as kl
+from kinlab.doctor.program.grounds.scaled import is_own
 from kinlab.doctor.program.read import read
 from kinlab.doctor.program.trial import FailedError, Trial
 
@@ -186,13 +187,13 @@ def test_slips_that_were_unknown(old, new, told, said) -> None:
 )
 def test_what_is_right_is_right_for_another_arm(text, robot, quantity) -> None:
     search = searched(robot, quantity, text, 0.0)
-    assert all(other.whole and search._holds(other) for other in search._others)
+    assert all(other.whole and search.arms.hold_for(other) for other in search.arms.before)
 
 
 def test_the_arms_own_number_is_not_the_slip() -> None:
     search = searched("planar2r", "gravity_torques", CLOSED, 0.0)
-    assert search.is_own(1.5)
-    assert not search.is_own(-1.5)
+    assert is_own(search.case.robot, 1.5)
+    assert not is_own(search.case.robot, -1.5)
 
 
 def test_a_programs_own_error_is_told_from_ours() -> None:

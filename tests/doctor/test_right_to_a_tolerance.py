@@ -60,7 +60,7 @@ def test_what_stops_early_is_right_to_there(name: str) -> None:
     f = written("import numpy as np\n" + text.replace("{small}", "1e-05"))
     assert not kl.compare(kl.Robot.from_dh(ARM), quantity, f).agrees
     found = kl.diagnose(ARM, quantity, f)
-    assert found.agrees and found.form == "rounded", str(found)
+    assert found.agrees and found.form == "digits", str(found)
     assert "1e-05" in str(found)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from kinlab.doctor.program.edits.numbers.data import NumberPlace, numbers, together
@@ -42,7 +43,7 @@ def of_small_numbers(search: LineSearch) -> Excuse | None:
             break
         after = _error_with(search, some, count)
         if after <= max(TOLERANCES.formula_agrees, _LESS * before):
-            return Excuse("rounded", (_told(some, before, after),))
+            return Excuse("digits", (_told(some, before, after),))
     return None
 
 
@@ -64,8 +65,9 @@ def _error_with(search: LineSearch, some: Sequence[NumberPlace], count: int) -> 
 
 def _told(some: Sequence[NumberPlace], before: float, after: float) -> str:
     said = _(
-        "it is right up to {numbers}, where it stops or what it is damped with: what is off is "
-        "{before:.0e}, and with a thousandth of that {after:.0e}"
+        "it agrees to {digits} digits, up to {numbers}, where it stops, or with which it damps or "
+        "takes differences: with a thousandth of that no more than {after:.0e} is off"
     )
     typed = dict.fromkeys(f"{abs(float(place.value)):g}" for place in some)
-    return said.format(numbers=_(" and ").join(typed), before=before, after=after)
+    digits = max(1, math.floor(-math.log10(2 * before)))
+    return said.format(numbers=_(" and ").join(typed), digits=digits, after=max(after, 1e-16))

@@ -248,7 +248,9 @@ class Line:
     @cached_property
     def gap(self) -> str:
         """What the writer puts around a sign between terms."""
-        return "" if re.search(r"\S[-+]\S", self.source) else " "
+        typed = (self.source, *self.text.symbols.values())
+        sums = [text for text in typed if re.search(r"\S ?[-+] ?\S", text)]
+        return "" if sums and re.search(r"\S[-+]\S", sums[0]) else " "
 
     @cached_property
     def meanings(self) -> Meanings:

@@ -62,7 +62,8 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     row = len(shape) == 1 and isinstance(node, ast.Name) and scope.has_numpy
     if row and not isinstance(parent, ast.Subscript | ast.BinOp | ast.Attribute):
         total = ast.Attribute(ast.Name("np", ast.Load()), "cumsum", ast.Load())
-        cost = 1.14 if isinstance(parent, ast.Call) else 1.1
+        unpacked = isinstance(parent, ast.Assign) and isinstance(parent.targets[0], ast.Tuple)
+        cost = 1.14 if isinstance(parent, ast.Call) else 1.16 if unpacked else 1.1
         yield here.instead(ast.Call(total, [node], []), "function", cost)
     for term in _in_the_other_case(here) if zero else ():
         if scope.observed.shape(term) == ():

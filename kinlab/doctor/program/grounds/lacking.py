@@ -34,7 +34,7 @@ _FRONTS = (1.0, 2.0, 0.5)
 """What may stand in front of it."""
 _MOST = 4
 """Products that are tried in one place."""
-_COST, _LONGER = 1.0, 0.02
+_COST, _LONGER = 1.1, 0.01
 """What one is far-fetched of two factors, and what each further one adds."""
 
 

@@ -29,6 +29,8 @@ _IDLE, _USED = 1.06, 1.17
 """What a term is far-fetched with a name that is used nowhere else, and without one."""
 _CROSSED = 1.1
 """The same of a product of two vectors with such a name, of which no dimension is known."""
+_COPIED = 0.02
+"""What it is likelier beside what is only another name for something: ``n3 = ni``."""
 _NEXT = 0.98
 """What one is with which each of the arm's links has its own."""
 _OF_SEVERAL, _OF_IDLE, _FITTING = 1.0, 1.05, 1.08
@@ -105,6 +107,7 @@ def _of_dimension(
         if told is None or told <= TOLERANCES.tried_further:
             sure, crossed = told is not None or zeros, isinstance(term, ast.Call)
             cost = _IDLE if idle and sure else _CROSSED if idle and crossed else _USED
+            cost -= _COPIED * (crossed and isinstance(here.node, ast.Name))
             found.append((cost, term))
     found.sort(key=lambda one: one[0])
     for cost, term in found[: _MOST if size is not None or zeros else _FEW]:

@@ -34,9 +34,9 @@ _ALIKE = 0.15
 """Cost beyond the first's of repairs that nothing else tells from it."""
 _TIED, _TIED_BESIDE = 0.08, 0.02
 """Of these, costs that are one; where the others are the same edits."""
-_NEXT, _STATEMENT = 0.07, 0.05
+_NEXT, _GAINED, _LOST = 0.07, 0.05, 0.12
 """What an edit may cost more that leaves more of the program as a textbook has it: at most, and
-for each statement."""
+for each statement; what it must cost less for each that it spoils."""
 _NAMED = 3
 """Repairs that are kept."""
 _STEPS = 3
@@ -221,7 +221,7 @@ class _Several:
                 continue
             for one in better:
                 more = search.left_right((*others, one.edits[-1])) - right
-                if here.likely(one.edits[-1]) < cost + _STATEMENT * more:
+                if here.likely(one.edits[-1]) < cost + (_GAINED if more > 0 else _LOST) * more:
                     return self._settled(search, better, turns + 1)
         return found
 
