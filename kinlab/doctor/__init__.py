@@ -5,7 +5,6 @@ module            what it holds
 ================  =================================================================================
 ``changes``       A reading: one thing that people take differently, and what the engine says if
                   one does; the answer's single entries
-``definitions``   Slips in what a writer's own names stand for, alone or with one more
 ``derived``       The engine's quantities as derived formulas, entry by entry, for arms with a DH
                   table
 ``examine``       The examination: compare, try the readings, look for slips in the entries, rank
@@ -15,22 +14,18 @@ module            what it holds
 ``file``          A file of formulas as text, each examined entry by entry
 ``numbers``       The robot's numbers taken otherwise: one of them another, or all of a kind
                   rounded
-``regression``    The difference of a function from the derived formula as a short sum of known
-                  terms
 ``report``        Diagnoses by every door: of a function, a text, a file, a row of a report,
                   typeset and marked
 ``rounding``      Rounded numbers of a function and of the robot's data, and whether they explain a
                   difference
-``search``        Every slip at one place of a formula, and those that turn it into another by
-                  their effect
 ``slips``         Slips of the pen in the entries that are off, alone or after a reading of the
                   whole answer
-``terms``         Slips within single entries: the derived formula beside a user's text or function
 ``verdicts``      Right in another way: with numbers for names, or another valid formula
 ``bytecode/``      The syntax tree of a function whose source text cannot be had
 ``confusions/``   What people take differently: a known confusion, and what the engine would say if
                   one does
 ``derivations/``  The textbooks' derivations, walked with any of their steps taken otherwise
+``entries/``       Slips within single entries: the derived formula beside a text or function
 ``glossary/``      What a value in somebody's program is, by the arm's own quantities
 ``linkages/``     Formulas of a five-bar as text: their names, what they are held against, what is
                   right too

@@ -16,9 +16,9 @@ from kinlab.doctor.changes import AnswerEntry, Arguments, Case, entries, table_o
 from kinlab.doctor.confusions.centres import as_there, centres_elsewhere
 from kinlab.doctor.derivations.words import together
 from kinlab.doctor.derived import derivation_of
+from kinlab.doctor.entries.terms import Slip
 from kinlab.doctor.linkages.looked_up import reference_of
 from kinlab.doctor.slips import of_entry, slip_cause
-from kinlab.doctor.terms import Slip
 from kinlab.doctor.text.habits import NOTHING
 from kinlab.doctor.text.line import words_in
 from kinlab.doctor.text.stand_ins import bare_number, rounding_remarks, stand_ins

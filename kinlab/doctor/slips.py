@@ -11,13 +11,13 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.compare import relative_errors
 from kinlab.check.diagnosis import Cause
-from kinlab.doctor import terms
 from kinlab.doctor.changes import AnswerEntry, Case, Confusion, entries
 from kinlab.doctor.confusions.centres import FreeCentres, apart, by_equal_numbers, stands_so
-from kinlab.doctor.definitions import Definitions
 from kinlab.doctor.derived import Derivation, searchable
+from kinlab.doctor.entries import terms
+from kinlab.doctor.entries.definitions import Definitions
+from kinlab.doctor.entries.terms import Slip
 from kinlab.doctor.linkages.looked_up import Reference, reference_of
-from kinlab.doctor.terms import Slip
 from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import numbers_at
 from kinlab.host.language import _

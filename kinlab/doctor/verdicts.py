@@ -15,16 +15,16 @@ from kinlab.check.compare import error_sizes, relative_errors
 from kinlab.check.quantities.fivebar import FIVEBAR
 from kinlab.doctor.changes import ANGLES, AnswerEntry, Case, entries, table_of
 from kinlab.doctor.derived import LETTERS, WRENCH, Derivation, derivation_of, searchable
+from kinlab.doctor.entries.regression import joint_functions
+from kinlab.doctor.entries.terms import as_rods, names_for
 from kinlab.doctor.linkages import five_bar
 from kinlab.doctor.linkages.looked_up import Reference
-from kinlab.doctor.regression import joint_functions
 from kinlab.doctor.rounding import (
     coefficients,
     coefficients_rounded,
     data_rounded,
     same_values,
 )
-from kinlab.doctor.terms import as_rods, names_for
 from kinlab.doctor.text.stand_ins import FITS, FREE, Numbered, fitted, rounding_remarks, stand_ins
 from kinlab.doctor.text.written import Literal, Written
 from kinlab.errors import KinlabError

@@ -17,7 +17,7 @@ from test_doctor_notes import NAMED
 
 import kinlab as kl
 from kinlab import arrays
-from kinlab.doctor import regression
+from kinlab.doctor.entries import regression
 from kinlab.formulas import tree
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts" / "bench"
@@ -83,7 +83,7 @@ def test_a_product_is_one_word_in_one_order():
     """Every product of every dictionary, as a bag of factors, stands there once."""
     from kinlab.check.quantities.registry import quantity
     from kinlab.doctor.derived import derivation
-    from kinlab.doctor.terms import names_for
+    from kinlab.doctor.entries.terms import names_for
 
     table = kl.load("planar2r").table
     for name in ("momentum_rate", "inverse_dynamics", "coriolis_torques", "kinetic_energy"):

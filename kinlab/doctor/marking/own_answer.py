@@ -12,12 +12,12 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes, relative_errors
+from kinlab.doctor.entries.terms import rods_following
 from kinlab.doctor.excuses import only_for
 from kinlab.doctor.linkages.named_numbers import named_numbers
 from kinlab.doctor.marking.marks import Outcome, points_left, right_outcome, wrong_outcome
 from kinlab.doctor.marking.sheet import Question, Sheet, SheetError
 from kinlab.doctor.marking.variation import robot_for
-from kinlab.doctor.terms import rods_following
 from kinlab.doctor.text.stand_ins import bare_number, stand_ins
 from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import holds_with_other_numbers

@@ -14,8 +14,8 @@ from kinlab.doctor.verdicts import Excuse
 from kinlab.host.language import _
 from kinlab.tolerances import TOLERANCES
 
-_SMALLER = 1e-3
-"""What small numbers are multiplied by."""
+_PARTS = 1000
+"""What small numbers are divided by."""
 _LESS = 0.03
 """What must be left of the error then, at most."""
 _EACH = 6
@@ -55,7 +55,7 @@ def _is_small(place: NumberPlace, search: LineSearch) -> bool:
 
 def _error_with(search: LineSearch, some: Sequence[NumberPlace], count: int) -> float:
     """The error that is left with smaller numbers."""
-    edits = tuple(together([(place, _SMALLER * float(place.value)) for place in some]))
+    edits = tuple(together([(place, float(place.value) / _PARTS) for place in some]))
     try:
         with quietly(), changed(search.trial, edits):
             return search.asked.error(range(count))

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.terms import Slip, slip_of
+from kinlab.doctor.entries.terms import Slip, slip_of
 from kinlab.doctor.text.alternatives import study
 from kinlab.doctor.text.line import Change, Line, words_in
 from kinlab.doctor.text.mend import Mended, rewritten

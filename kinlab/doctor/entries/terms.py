@@ -12,12 +12,12 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.check.diagnosis import shown_entry
-from kinlab.doctor import regression, search
 from kinlab.doctor.changes import ANY_ZERO
 from kinlab.doctor.confusions.centres import FreeCentres
 from kinlab.doctor.derived import POINTS, Derivation, searchable
+from kinlab.doctor.entries import regression, search
+from kinlab.doctor.entries.search import Edit, Repair
 from kinlab.doctor.linkages.looked_up import Reference
-from kinlab.doctor.search import Edit, Repair
 from kinlab.doctor.text.line import Line, Names, brief
 from kinlab.doctor.text.mend import Mended, mended, one_after_another, rewritten, together
 from kinlab.doctor.text.numbers_off import as_meant, beside_rounded, rounded_in
