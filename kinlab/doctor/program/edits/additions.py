@@ -43,6 +43,8 @@ _MIXED = 0.96
 """Cost of a lost 2 in the mixed term of a square: a length for a distance is as soon mistaken."""
 _BESIDE_A_PART = 1.08
 """What it is to forget all of one beside a part of another: ``m2/2 + m3``."""
+_AS_GIVEN = 0.02
+"""What it is likelier of what a line only takes over: ``n = wrench[3:]``."""
 _DIVIDED = 1.07
 """Cost of a divisor that is lost."""
 _SAME_NUMBER = 0.06
@@ -225,6 +227,8 @@ def _matrices(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
             turning = not scope.fronts.isdisjoint(names(matrix))
             near = _NEAR if text in beside else _TURNING if turning else 1.0
             cost = 1.02 + min(scope.dear(matrix), near)
+            given = isinstance(here.parent, ast.Assign) and isinstance(node, ast.Subscript)
+            cost -= _AS_GIVEN * given
             for turned in (matrix, ast.Attribute(matrix, "T", ast.Load())):
                 if turned is not matrix and isinstance(matrix, ast.Attribute):
                     continue

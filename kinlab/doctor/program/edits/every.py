@@ -21,6 +21,7 @@ from kinlab.doctor.program.edits.composites import of_composites
 from kinlab.doctor.program.edits.elsewhere import Elsewhere
 from kinlab.doctor.program.edits.forgotten import (
     across,
+    less_a_row,
     of_forgotten,
     of_kinds_of_joints,
     with_slices,
@@ -194,6 +195,7 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Progra
         yield from of_call(here, scope, observed)
     elif isinstance(node, ast.Subscript):
         yield from of_subscript(here, scope, observed)
+        yield from less_a_row(here, scope)
     elif isinstance(node, ast.Name):
         product = isinstance(here.parent, ast.BinOp) and isinstance(here.parent.op, ast.Mult)
         yield from of_name(here, scope, observed, index or (whole and not product))

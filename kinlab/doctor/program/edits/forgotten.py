@@ -23,6 +23,8 @@ _RATES = ("w", "o", "W", "O")
 _ARMS = ("p", "P", "r", "c", "C", "l", "L", "d", "s")
 """How names of what leads from one point to another begin."""
 _VECTOR, _TWIST, _HOMOGENEOUS = (3,), (6,), (4,)
+_DIAGONAL = 1.06
+"""What it is to forget what is used nowhere on a diagonal."""
 _FEW = 8
 """Names of one kind that are tried."""
 _SUMS = ast.Add | ast.Sub
@@ -56,6 +58,8 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
         yield from _of_another_row(here, scope)
         yield from _of_the_point(here, scope)
         return
+    if isinstance(node, ast.Call) and called(node) == "zeros" and len({*shape}) == 1 < len(shape):
+        yield from _with_a_diagonal(here, scope, shape[0])
     if isinstance(node, ast.Call) and called(node) == "zeros" and not _is_filled(here):
         for _text, vector in scope.simple(shape):
             if not isinstance(getattr(vector, "slice", None), ast.Tuple):  # a part of a matrix
@@ -90,6 +94,53 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
             yield from _of_twists(here, scope)
         if len(shape) == 2:
             yield from _turned_matrices(here, scope, shape)
+
+
+def _with_a_diagonal(here: Here, scope: Scope, size: int) -> Iterator[ProgramEdit]:
+    """What nothing uses on the diagonal of a matrix that begins as zeros: the rotors' inertias."""
+    if not scope.has_numpy:
+        return
+    idle = [f"np.diag({name})" for name, shape in scope.shapes.items()
+            if name in scope.unused and shape == (size,)]  # fmt: skip
+    over = {pair for one in nodes(here.above[0]) for pair in _gone_through(one)}
+    idle += [
+        f"np.diag([{one}.{name} for {one} in {every}])"
+        for name in sorted(scope.idle_attributes)
+        if scope.attributes[name] == ()
+        for one, every in sorted(over)
+    ]
+    for text in idle:
+        yield here.instead(ast.parse(text, mode="eval").body, "missing term", _DIAGONAL)
+
+
+def _gone_through(node: ast.AST) -> Iterator[tuple[str, str]]:
+    """The names of what a loop takes, each with the name of the list that it takes it from."""
+    if not isinstance(node, ast.For | ast.comprehension):
+        return
+    target, over = node.target, node.iter
+    parts = target.elts if isinstance(target, ast.Tuple) else [target]
+    given = over.args if isinstance(over, ast.Call) else [over]
+    if isinstance(over, ast.Call) and called(over) == "enumerate":
+        parts = parts[1:]
+    for one, every in zip(parts, given, strict=False):
+        if isinstance(one, ast.Name) and isinstance(every, ast.Name):
+            yield one.id, every.id
+
+
+def less_a_row(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """Points less the point of a list that a loop has come to: ``c[j:] - o[j]`` for ``c[j:]``."""
+    seen = scope.observed.of(here.node)
+    points = seen is not None and bool(seen.values) and seen.values[0].shape[1:] == _VECTOR
+    if not points or not isinstance(here.node.slice, ast.Slice):
+        return
+    for name, shape in scope.lists.items():
+        if shape != _VECTOR or name in names(here.node):
+            continue
+        for counter in scope.counters:
+            row = ast.Subscript(ast.Name(name, ast.Load()), ast.Name(counter, ast.Load()))
+            row.ctx = ast.Load()
+            cost = 1.05 if name in scope.unused else 1.14
+            yield here.instead(ast.BinOp(here.node, ast.Sub(), row), "missing term", cost)
 
 
 def across(here: Here) -> Iterator[ProgramEdit]:

@@ -11,7 +11,6 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from functools import reduce
 from itertools import combinations_with_replacement
-from typing import Any
 
 import numpy as np
 
@@ -32,7 +31,7 @@ _FACTORS = 4
 """Factors of a product."""
 _FRONTS = (1.0, 2.0, 0.5)
 """What may stand in front of it."""
-_MOST = 4
+_MOST = 6
 """Products that are tried in one place."""
 _COST, _LONGER = 1.1, 0.01
 """What one is far-fetched of two factors, and what each further one adds."""
@@ -117,7 +116,7 @@ class _Products:
         """The products that are one of the numbers wanted, (G, S), or less; the shortest first."""
         moving = np.ptp(wanted, axis=1) > TOLERANCES.same_relation * np.abs(wanted).max(axis=1)
         wanted = wanted[moving & wanted.all(axis=1)]
-        found: dict[tuple[int, int, float], Any] = {}
+        found: set[tuple[int, int, float, bool]] = set()
         line = self.sizes[self.order, 0]
         near = TOLERANCES.same_relation
         for front in _FRONTS:
@@ -128,9 +127,11 @@ class _Products:
                 for k in map(int, self.order[low[g] : high[g]]):
                     signs = np.sign(wanted[g]) * self.signs[k]
                     if np.abs(self.sizes[k] - sizes[g]).max() <= near and np.ptp(signs) == 0:
-                        op = ast.Add() if signs[0] > 0 else ast.Sub()
-                        found[len(self.ways[k]), k, front] = op
-        return [(op, self._term(k, front), n) for (n, k, front), op in sorted(found.items())]
+                        found.add((len(self.ways[k]), k, front, bool(signs[0] < 0)))
+        return [
+            (ast.Sub() if less else ast.Add(), self._term(k, front), n)
+            for n, k, front, less in sorted(found)
+        ]
 
     def _term(self, k: int, front: float) -> ast.expr:
         factors = [copied(self.atoms[self.texts[n]][0]) for n in self.ways[k]]

@@ -104,7 +104,8 @@ class OtherArms:
         (before, _), (apart, larger) = self.before, self.of(several)
         if before is not None and apart is not None:
             odd = apart.odd and len(several) > 1 and not self.hold_for(apart)
-            put = {(edit.node, edit.place) for edit in several if edit.of_the_arm}
+            own = (edit for edit in several if self._sets_own(edit))
+            put = {(edit.node, edit.place) for edit in own}
             if odd or before.fitting - apart.fitting - put:
                 return True  # a name has a number that none has of those that are called so
             if apart.whole and self.at(apart) is not None:
@@ -127,6 +128,12 @@ class OtherArms:
         if edit.numbers is None or self._counts(edit):
             return False
         return is_own(robot, edit.numbers[1])
+
+    def _sets_own(self, edit: ProgramEdit) -> bool:
+        """Whether an edit puts a number of this arm's in."""
+        if edit.numbers is None or self._counts(edit):
+            return edit.of_the_arm
+        return edit.of_the_arm or is_own(self.asked.case.robot, edit.numbers[1])
 
     def at(self, other: OtherArm) -> Asked | None:
         """What is right of another arm, worked out when it is first asked for."""

@@ -36,6 +36,9 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
         yield here.instead(alone, extra, 1.1)
         if index:
             return
+        listed = any(isinstance(x, ast.List | ast.Tuple) for x in (left, right))
+        if listed and isinstance(op, ast.Add):
+            yield here.instead(ast.BinOp(right, op, left), "order", 1.05)
         for new in chains.together(node):
             yield here.instead(new, "parentheses", 1.1)
         for new in chains.multiplied(node):
