@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Container, Iterator
 
-from kinlab.doctor.bytecode.syntax import copied, names, nodes
+from kinlab.doctor.bytecode.syntax import called, copied, names, nodes
 from kinlab.doctor.program.edits.additions import OtherAxis, OtherName
 from kinlab.doctor.program.edits.scope.forms import Turned
 from kinlab.doctor.program.edits.scope.part import Scope
@@ -17,6 +17,8 @@ _FAR = 6
 """Lines over which a statement may have been moved."""
 _UPDATED = 1.09
 """Cost of a line right before or behind the one that updates what it uses: it is one too late."""
+_NEVER = 1.02
+"""Cost of a line that fills what is never filled."""
 _LONG, _NAMES = 100, 8
 """Characters of a line of which another is made."""
 _PLAIN = (ast.Assign, ast.AugAssign, ast.Expr)
@@ -35,6 +37,7 @@ def of_blocks(
                 yield from _twice(part, node, name, block)
                 yield from _beside(part, node, name, block, scope)
                 yield from _of_twins(part, node, name, block)
+                yield from _never_filled(part, tree, node, name, block, scope)
                 yield from _of_unused(part, tree, node, name, block, scope)
         if isinstance(node, ast.For | ast.While):
             yield from _updates(part, tree, node, scope, observed)
@@ -237,6 +240,39 @@ def _beside(
                 turned = copied(other)
                 turned.value = ast.UnaryOp(ast.USub(), turned.value)
                 yield _missing(part, node, name, block, at + 1, turned, 1.16)
+
+
+def _never_filled(
+    part: int,
+    tree: ast.FunctionDef,
+    node: ast.AST,
+    name: str,
+    block: list[ast.stmt],
+    scope: Scope,
+) -> Iterator[ProgramEdit]:
+    """What is made as zeros and never filled: ``Jw[:, j] = z`` behind ``Jv[:, j] = ...``."""
+    filled = {one.id for one in written_into(tree)}
+    made = {
+        one.id
+        for line in nodes(tree)
+        if isinstance(line, ast.Assign)
+        for target in line.targets
+        for one, value in paired(target, line.value)
+        if isinstance(one, ast.Name) and isinstance(value, ast.Call) and called(value) == "zeros"
+    }
+    for at, line in enumerate(block):
+        target = next(iter(_targets(line)), None)
+        if not isinstance(target, ast.Subscript) or not isinstance(target.value, ast.Name):
+            continue
+        shape = scope.shapes.get(target.value.id)
+        for other in sorted(made - filled):
+            if shape is None or len(shape) != 2 or scope.shapes.get(other) != shape:
+                continue
+            for _text, vector in scope.simple(shape[:1]):
+                own = copied(target)
+                own.value = ast.Name(other, ast.Load())
+                new = ast.Assign([own], copied(vector))
+                yield _missing(part, node, name, block, at + 1, new, _NEVER)
 
 
 def _of_twins(part: int, node: ast.AST, name: str, block: list[ast.stmt]) -> Iterator[ProgramEdit]:
