@@ -51,6 +51,8 @@ _IN_ORDER = 30_000_000
 """Work for one slip after another."""
 _ALONE, _IN_LANES, _WAYS = 3_000_000, 12_000_000, 2
 """Work for the last one beside them, run alone, and in lanes after that; of how many ways."""
+_BESIDE_TWO = 50_000_000
+"""The same in lanes beside two edits, each of which has made a statement right."""
 _TURNS = 3
 """Edits of one repair that are exchanged for likelier ones."""
 _RESTING = 2
@@ -159,9 +161,10 @@ class _Several:
         for way in ways if self.left > 0 else ():
             with changed(search.trial, way):
                 here = _beside(search, way)
-                here.most, here.in_lanes = _ALONE, _IN_LANES
+                here.most = _ALONE
+                here.in_lanes = _IN_LANES if len(way) < _DEEPEST else _BESIDE_TWO
                 found = here.singles()
-                self.left -= here.work.done // _WAYS
+                self.left -= min(here.work.done, _IN_LANES) // _WAYS
             if found:
                 return found
         return []
