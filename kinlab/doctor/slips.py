@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import replace
 from itertools import product
 
@@ -29,6 +29,8 @@ LIST = 3
 """Slips in one cause above which a reading with fewer slips is looked for too."""
 _PATIENCE = 2
 """Entries without an explanation after which the rest are not tried."""
+_PAIR = 2
+"""Slips of a formula itself beside which none is looked for in definitions."""
 _FLOOD = 8
 """Slips in all entries together above which a list of them is no diagnosis."""
 _TIED = 5
@@ -48,8 +50,14 @@ def slips_in(
         defined.append(one)
         written = _defined_otherwise(written, one)
         off = _still_off(case, every, written)
-    several = [] if defined else _with_one_more(case, every, off, written)
-    per_entry = several or [*([one] for one in defined), *_per_entry(case, off, written)]
+    some = [] if defined else [*_definitions(case, every, off, written)]
+    asked = {entry.label: entry for entry, _one in some}
+    few = {x for x, one in asked.items() if not of_entry(case, one, written[x], _PAIR)}
+    open_ = [(entry, one) for entry, one in some if entry.label in few]
+    several = _with_more(case, every, open_, written, Definitions.with_one_more)
+    per_entry = several or [*([one] for one in defined), *_per_entry(case, off, written, few)]
+    if not all(per_entry) and isinstance(reference_of(case), Derivation):
+        per_entry = _with_more(case, every, open_, written, Definitions.with_two_more) or per_entry
     if not all(per_entry):
         return [], tuple(found[0].sentence for found in per_entry if found)
     # alternatives are told for one entry at a time; all of all would be a flood
@@ -59,8 +67,20 @@ def slips_in(
     return [slip_cause(chosen) for chosen in sets], ()
 
 
-def _per_entry(case: Case, off: list[AnswerEntry], written: dict[str, Written]) -> list[list[Slip]]:
-    """What explains each entry, as long as most are explained."""
+def _per_entry(
+    case: Case,
+    off: list[AnswerEntry],
+    written: dict[str, Written],
+    tried: Collection[str] = (),
+) -> list[list[Slip]]:
+    """What explains each entry, as long as most are explained.
+
+    Args:
+        case: the states.
+        off: the entries.
+        written: the texts.
+        tried: entries that one or two slips of their own do not explain.
+    """
     per_entry: list[list[Slip]] = []
     seen: list[Written] = []
     for entry in off:
@@ -69,7 +89,7 @@ def _per_entry(case: Case, off: list[AnswerEntry], written: dict[str, Written]) 
             if any(text is other for other in seen):
                 continue  # the mirror image of an entry that is given once
             seen.append(text)
-        found = of_entry(case, entry, text)
+        found = of_entry(case, entry, text, least=1 + _PAIR * (entry.label in tried))
         if not found and text is not None and (opened := text.opened()) is not text:
             found = of_entry(case, entry, opened)
         # all repairs of a text give one formula: the likeliest is told
@@ -105,20 +125,30 @@ def _defined(
     return min(found, key=lambda one: (one[0], one[1].cost))[1] if found else None
 
 
-def _with_one_more(
-    case: Case, every: list[AnswerEntry], off: list[AnswerEntry], written: dict[str, Written]
+def _with_more(
+    case: Case,
+    every: list[AnswerEntry],
+    off: list[tuple[AnswerEntry, Definitions]],
+    written: dict[str, Written],
+    looked_for: Callable[[Definitions], Iterable[tuple[Slip, ...]]],
 ) -> list[list[Slip]]:
-    """Slips in definitions with which one more slip explains each entry; none if there are none."""
-    for entry, some in _definitions(case, every, off, written):
-        if of_entry(case, entry, written[entry.label], 2):
-            return []
-        for slips in some.with_one_more():
+    """Slips in definitions with which few more explain each entry; none if there are none.
+
+    Args:
+        case: the states.
+        every: the entries that were off at first.
+        off: those that one or two slips of their own do not explain, with their definitions.
+        written: the texts.
+        looked_for: how the slips in definitions are found.
+    """
+    for entry, some in off:
+        for slips in looked_for(some):
             changed = written
             for slip in slips:
                 changed = _defined_otherwise(changed, slip)
             left = _still_off(case, every, changed)
             more = _per_entry(case, left, changed)
-            if all(more) and len(left) <= len(off):
+            if all(more):
                 told = [slip.with_error(0.0) for slip in slips[:-1]]
                 last = slips[-1]
                 error = entry.error(last.values, entry.engine) if not left else 0.0
@@ -206,14 +236,16 @@ def slip_cause(slips: tuple[Slip, ...]) -> Cause:
     )
 
 
-def of_entry(case: Case, entry: AnswerEntry, text: Written | None, most: int = LIST) -> list[Slip]:
+def of_entry(
+    case: Case, entry: AnswerEntry, text: Written | None, most: int = LIST, least: int = 1
+) -> list[Slip]:
     """What explains one entry.
 
     Args:
         case: the states.
         entry: the entry.
         text: it as it was written, of a text.
-        most: slips of a text up to which is looked.
+        most, least: slips of a text that are looked for.
     """
     derived = reference_of(case)
     if derived is None or (text is None and not isinstance(derived, Derivation)):
@@ -226,7 +258,7 @@ def of_entry(case: Case, entry: AnswerEntry, text: Written | None, most: int = L
         assert text is not None
         text, elsewhere = _as_read(case, entry, text, derived)
         of = (derived, poly, arguments, case.arguments)
-        found = terms.in_text(entry.label, text, *of, elsewhere, most)
+        found = terms.in_text(entry.label, text, *of, elsewhere, most, least)
     else:
         others = [derived.tree(p) for p in derived.polys.flat if len(p) < 200]
         of = (derived, poly, arguments, case.arguments)

@@ -17,12 +17,14 @@ from kinlab.arrays import Array
 from kinlab.doctor.entries.terms import Slip, slip_of
 from kinlab.doctor.text.alternatives import study
 from kinlab.doctor.text.line import Change, Line, words_in
-from kinlab.doctor.text.mend import Mended, rewritten
+from kinlab.doctor.text.mend import Mended, rewritten, right_with_two
 from kinlab.doctor.text.written import Written
 from kinlab.tolerances import TOLERANCES
 
 _MOST = 300
 """Changes of one text that are tried with those of another, the likeliest."""
+_NOTED = 30_000
+"""Changes that may be noted where two more are looked for."""
 _FEW = 5
 """Points at which they are tried first."""
 _ADDED, _FOREIGN = ("missing term", "missing factor"), 0.3
@@ -147,6 +149,18 @@ class Definitions:
                         cost += _AWAY * bool(other.name)
                         found += [(cost, len(found), both)] if both else []
         return [both for _cost, _turn, both in sorted(found, key=lambda x: x[:2])[:_NAMED]]
+
+    def with_two_more(self) -> Iterator[tuple[Slip, ...]]:
+        """Changes of a definition beside which two of what stands in the formula are right."""
+        formula = _part(self.line, "")
+        plain = sum(one.kind not in _ADDED for one in formula.changes)
+        most = _NOTED // max(plain, 1) // max(len(self.parts), 1)
+        for part in self.parts:
+            for k, new in enumerate(part.texts[:most]):
+                text = _put(self.line.text, part.name, new)
+                then = replace(self.line, text=text, places=[], changes=[], rows=[])
+                if part.changes[k].kind not in _ADDED and right_with_two(then):
+                    yield (self._slip(part, k, _put(self.told, part.name, new)),)
 
     def _right(self, whole: Array, target: Array) -> Any:
         """Which of several answers are what they should be."""

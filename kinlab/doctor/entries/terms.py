@@ -100,6 +100,7 @@ def in_text(
     states: dict[str, Array],
     elsewhere: FreeCentres | None = None,
     most: int = 3,
+    least: int = 1,
 ) -> list[Slip]:
     """Slips that turn the user's text into the derived formula, at random parameters.
 
@@ -113,7 +114,7 @@ def in_text(
         arguments: the quantity's arguments.
         states: the comparison's states.
         elsewhere: the same of an arm with its centres elsewhere, where that is asked.
-        most: how many slips are looked for.
+        most, least: how many slips are looked for.
     """
     if not searchable(poly):
         return []
@@ -163,7 +164,7 @@ def in_text(
     tried += [(line, 2) for line in lines]
     all_ = (*moved, *lines) if most > 2 else ()
     ways: Iterator[tuple[Line, list[Mended]]] = chain(
-        ((line, mended(line, count)) for line, count in tried if count <= most),
+        ((line, mended(line, count)) for line, count in tried if least <= count <= most),
         ((line, _part_by_part(line)) for line in all_ if not line.numeric),
         ((line, mended(line)) for line in all_),
         ((line, one_after_another(line)) for line in all_[:_LINES] if not line.numeric),

@@ -33,6 +33,8 @@ _LONG = 8
 """Names in a formula from which on three slips are looked for."""
 _PLAIN = 1.1
 """Cost up to which a change is the first of three that are tried one after another."""
+_NOTED = 40_000
+"""Changes that may be noted, all in all, where three are tried one after another."""
 _EXCHANGED = 0.6
 """What it costs to exchange a whole term beside mending it."""
 _TERMS = {"extra term", "missing term"}
@@ -208,10 +210,9 @@ def one_after_another(line: Line) -> list[Mended]:
     study(line)
     at = {(c.start, c.end, c.new): k for k, c in enumerate(line.changes)}
     ranked = sorted(range(len(line.changes)), key=lambda k: line.changes[k].cost)
-    plain = (k for k in ranked if line.changes[k].kind not in _TERMS)
-    allowed = TOLERANCES.effect_matches * line.scale
+    plain = [k for k in ranked if line.changes[k].kind not in _TERMS]
     found: list[tuple[int, ...]] = []
-    for k in plain:
+    for k in plain[: _NOTED // max(len(plain), 1)]:
         one = line.changes[k]
         if one.cost > _PLAIN:
             break
@@ -220,16 +221,26 @@ def one_after_another(line: Line) -> list[Mended]:
         if text is None or one.everywhere or len(text) != len(line.source) + longer:
             continue
         then = replace(line, text=replace(line.text, text=text), places=[], changes=[], rows=[])
-        study_what_stands(then)
-        if not then.rows:
-            continue
-        wanted = then.target - then.root.value
-        for two in _pairs(then, np.array(then.rows), wanted, allowed):
+        for two in _pairs_of_what_stands(then):
             spans = [_before(then.changes[n], one, longer) for n in two]
             before = [at[span] for span in spans if span in at]
             if len(before) == len(two):
                 found.append((k, *before))
     return sorted(_checked(line, _cheapest(line, found)), key=lambda m: m.cost)
+
+
+def _pairs_of_what_stands(line: Line) -> list[tuple[int, ...]]:
+    """Two changes of what stands there that may make a line right."""
+    study_what_stands(line)
+    if not line.rows:
+        return []
+    allowed = TOLERANCES.effect_matches * line.scale
+    return _pairs(line, np.array(line.rows), line.target - line.root.value, allowed)
+
+
+def right_with_two(line: Line) -> bool:
+    """Whether two changes of what stands there make a line right."""
+    return any(True for _one in _checked(line, _pairs_of_what_stands(line)))
 
 
 def _before(change: Change, one: Change, longer: int) -> tuple[int, int, str]:
