@@ -232,7 +232,7 @@ def test_an_array_that_nothing_uses_any_more_is_the_arms() -> None:
     robot, quantity, text = PROGRAMS["chain"]
     text = text.replace("tip = T[-1] @ TOOL", "tip = T[-1]").replace("- T[k][:3, 3]", "")
     told = kl.diagnose(robot, quantity, written(text)).sentence
-    assert "tip @ TOOL" in told
+    assert "`tip = T[-1] @ TOOL`" in told
     assert "- T[k][:3, 3]" in told
 
 
