@@ -90,6 +90,8 @@ def holds_with_other_numbers(
     }
     whole = {k: names for k, names in whole.items() if names}
     rounds = [next(states) for _ in range(_ROUNDS)]
+    if all(_as_they_are(text, at, right(at)) for at in rounds):
+        return True
     if len(literals) > FREE:
         return False
     for choice in islice(product(*([None, *names] for names in whole.values())), _CHOICES):
@@ -97,6 +99,11 @@ def holds_with_other_numbers(
         if all(_fits(text, at, right(at), decimal, put) for at in rounds):
             return True
     return False
+
+
+def _as_they_are(text: Written, at: dict[str, Array], target: Array) -> bool:
+    scale = float(np.max(np.abs(target))) or 1.0
+    return float(np.max(np.abs(text.values(at) - target))) <= TOLERANCES.formula_agrees * scale
 
 
 def _fits(
@@ -247,6 +254,9 @@ def elsewhere(
         if holds_with_other_numbers(text, whole, map(there, states), own):
             return _kept(text, right, own, at, missing, derived), 0.0
     plain = all(n.value.denominator <= 12 for _, n in tree.nodes(text.node) if n.op == "num")
+    decimals = any(one.half > 0 and not one.whole for one in text.literals)
+    if decimals and len(text.literals) > FREE:  # too many to ask which of them are the robot's
+        plain = False
     return _kept(text, right, own, at, missing, derived) if missing else [], gap if plain else 0.0
 
 
