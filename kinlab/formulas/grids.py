@@ -10,18 +10,17 @@ import re
 from collections.abc import Iterator, Mapping
 from itertools import product
 
+from kinlab.formulas.signs.brackets import closes, parts_at
 from kinlab.formulas.signs.refusals import refused
 from kinlab.formulas.typed import (
     LONG,
     TWO,
     Hand,
     bare,
-    closes,
     entry_name,
     hand,
     is_latex,
     of_one_name,
-    parts_at,
     plain_formula,
     sides,
     turned,

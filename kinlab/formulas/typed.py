@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from kinlab.errors import ExpressionError
 from kinlab.formulas.signs import latex
 from kinlab.formulas.signs.beside import with_products
+from kinlab.formulas.signs.brackets import closes, parts_at
 from kinlab.formulas.signs.degrees import in_radians
 from kinlab.formulas.signs.refusals import refused
 from kinlab.formulas.signs.remarks import without_remarks
@@ -353,7 +354,7 @@ def _small(found: re.Match[str]) -> str:
 def _with_powers(text: str) -> str:
     """``power(a, 2)`` and ``pow(a, 2)`` as ``(a)**(2)``."""
     while found := _POWER.search(text):
-        end = found.end() + closes(text[found.end() :])
+        end = closes(text, found.end())
         parts = parts_at(text[found.end() + 1 : end], ",")
         if end < found.end() or len(parts) != 2:
             break
@@ -850,25 +851,3 @@ def _head_and_places(name: str) -> tuple[str, str]:
     if "[" in name:
         places = "".join(str(int(k) + 1) for k in places.split(",") if k)
     return head.lower(), places.replace(",", "")
-
-
-def closes(text: str) -> int:
-    """Where the bracket that the text begins with is closed."""
-    depth = 0
-    for k, character in enumerate(text):
-        depth += (character in "([{") - (character in ")]}")
-        if depth == 0:
-            return k
-    return -1
-
-
-def parts_at(text: str, sign: str) -> list[str]:
-    """The text, cut at a sign outside of all parentheses."""
-    parts, depth = [""], 0
-    for character in text:
-        depth += (character in "([{") - (character in ")]}")
-        if character == sign and depth == 0 and parts[-1][-1:] != "\\":
-            parts.append("")
-        else:
-            parts[-1] += character
-    return [part.strip() for part in parts]

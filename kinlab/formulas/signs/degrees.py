@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import re
 
+from kinlab.formulas.signs.brackets import closes, parts_at
+
 _SIGN = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)\s*[°º]")
 _PREFIX = r"(?<![\w.])(?:(?:np|numpy|math|sp|sympy)\.)?"
 _CALLS = (
@@ -22,6 +24,7 @@ _DEGREES = re.compile(
 )
 """A term that is an angle in degrees whatever its names are: a number, ``(q1 + q2)*180/pi``."""
 _MOST = 50
+_PARENTHESES = ("(", ")")
 
 
 def in_radians(text: str, pi: str, calls: bool = True) -> str:
@@ -40,14 +43,15 @@ def in_radians(text: str, pi: str, calls: bool = True) -> str:
         found = _WAVE.search(text, start)
         if found is None:
             break
-        start, end = found.end(), _closed(text, found.end())
+        start = found.end()
+        end = closes(text, start, _PARENTHESES) + 1
         if end and _in_degrees(text[start + 1 : end - 1]):
             text = f"{text[: found.start()]}{found[1]}({text[start:end]}*{pi}/180){text[end:]}"
             start = found.start() + 1
     for called, instead in _CALLS:
         for _ in range(_MOST):
             found = called.search(text)
-            end = _closed(text, found.end()) if found else 0
+            end = closes(text, found.end(), _PARENTHESES) + 1 if found else 0
             if found is None or not end:
                 break
             inside = instead.format(inside=text[found.end() : end], pi=pi)
@@ -55,23 +59,7 @@ def in_radians(text: str, pi: str, calls: bool = True) -> str:
     return text
 
 
-def _closed(text: str, start: int) -> int:
-    """Behind the bracket that closes the one at ``start``; 0 where none does."""
-    depth = 0
-    for k in range(start, len(text)):
-        depth += (text[k] == "(") - (text[k] == ")")
-        if depth == 0:
-            return k + 1
-    return 0
-
-
 def _in_degrees(angle: str) -> bool:
     """Whether each term of an angle is surely in degrees."""
-    terms, depth = [""], 0
-    for character in angle.strip().removeprefix("-"):
-        depth += (character == "(") - (character == ")")
-        if character in "+-" and depth == 0:
-            terms.append("")
-        else:
-            terms[-1] += character
-    return all(_DEGREES.fullmatch(term.strip()) for term in terms)
+    terms = parts_at(angle.strip().removeprefix("-"), "+-")
+    return all(_DEGREES.fullmatch(term) for term in terms)

@@ -10,6 +10,8 @@ from __future__ import annotations
 import re
 from functools import lru_cache
 
+from kinlab.formulas.signs.brackets import closes, outside
+
 _CHINESE = "\u4e00-\u9fff\u3001"
 _SPACES = r"(?:\s|~|\\[,;:! ]|\\q?quad(?![A-Za-z])){0,20}+"
 _BEHIND = rf"(?:(?<!\\)[,;]|\\q?quad(?![A-Za-z])){_SPACES}"
@@ -56,6 +58,7 @@ _SAID = {
 }
 _FRONT, _BEHIND_IT = re.compile(r"(?:^|[-+=(\[{&])\s*$"), re.compile(r"\s*(?:$|[-+=)\]},;&\n])")
 _MOST = 40
+_BRACES = ("{", "}")
 
 
 def _without_braces(text: str) -> str:
@@ -63,40 +66,21 @@ def _without_braces(text: str) -> str:
     start = 0
     for _ in range(_MOST):
         found = _BRACE.search(text, start)
-        end = _closed(text, found.end()) if found else 0
+        end = closes(text, found.end(), _BRACES) + 1 if found else 0
         if found is None or not end:
             break
         said = _SAID[found[1]].match(text, end)
-        behind = _closed(text, said.end()) if said else end
+        behind = closes(text, said.end(), _BRACES) + 1 if said else end
         inside, before = text[found.end() + 1 : end - 1], text[: found.start()]
         alone = _FRONT.search(before) and before.rstrip()[-1:] != "-"
         raised = text[behind:].lstrip()[:1] in ("_", "^")
-        sure = not _is_sum(inside) or (alone and _BEHIND_IT.match(text, behind))
+        is_sum = any(one in "+-" for _k, one in outside(inside))
+        sure = not is_sum or (alone and _BEHIND_IT.match(text, behind))
         if behind and sure and not raised:
             text = f"{before} {inside} {text[behind:]}"
         else:
             start = found.end()
     return text
-
-
-def _closed(text: str, start: int) -> int:
-    """Behind the brace that closes the one at ``start``; 0 where none does."""
-    depth = 0
-    for k in range(start, len(text)):
-        depth += (text[k] == "{") - (text[k] == "}")
-        if depth == 0:
-            return k + 1
-    return 0
-
-
-def _is_sum(text: str) -> bool:
-    """Whether a sign stands outside of all brackets."""
-    depth = 0
-    for character in text:
-        depth += (character in "([{") - (character in ")]}")
-        if character in "+-" and depth == 0:
-            return True
-    return False
 
 
 @lru_cache(maxsize=1024)
