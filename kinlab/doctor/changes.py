@@ -34,6 +34,12 @@ ANY_ZERO = ("potential_energy", "lagrangian")
 """Quantities of which a constant more or less is no slip."""
 
 
+def less_turns(angles: Array, right: Array) -> Array:
+    """Angles without the whole turns by which they are off, (..., N)."""
+    with np.errstate(invalid="ignore"):
+        return np.asarray(angles - 2 * np.pi * np.rint((angles - right) / (2 * np.pi)))
+
+
 @dataclass(frozen=True)
 class Confusion:
     """One known confusion.

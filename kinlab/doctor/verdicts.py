@@ -13,7 +13,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes, relative_errors
 from kinlab.check.quantities.fivebar import FIVEBAR
-from kinlab.doctor.changes import ANGLES, AnswerEntry, Case, entries, table_of
+from kinlab.doctor.changes import ANGLES, AnswerEntry, Case, entries, less_turns, table_of
 from kinlab.doctor.derived import LETTERS, WRENCH, Derivation, derivation_of, searchable
 from kinlab.doctor.entries.regression import joint_functions
 from kinlab.doctor.entries.terms import as_rods, names_for
@@ -69,7 +69,7 @@ def holds_with_other_numbers(
     right: Callable[[Mapping[str, Array]], Array],
     states: Iterator[dict[str, Array]],
     own: Mapping[str, float],
-) -> bool:
+) -> bool | None:
     """Whether the text is right for other robots too, once its numbers are those robots' numbers.
 
     Decimals may be anything; a whole number only the parameter that it equals: the 2 of ``l1/2``
@@ -80,6 +80,9 @@ def holds_with_other_numbers(
         right: the derived formula's values at any.
         states: sets of other numbers, with joint states.
         own: the robot's numbers.
+
+    Returns:
+        None where there are too many numbers to ask which of them are the robots'.
     """
     literals = text.literals
     decimal = [k for k, one in enumerate(literals) if one.half > 0 and not one.whole]
@@ -90,10 +93,10 @@ def holds_with_other_numbers(
     }
     whole = {k: names for k, names in whole.items() if names}
     rounds = [next(states) for _ in range(_ROUNDS)]
-    if all(_as_they_are(text, at, right(at)) for at in rounds):
+    if all(_gap(text, at, right(at)) <= TOLERANCES.formula_agrees for at in rounds):
         return True
     if len(literals) > FREE:
-        return False
+        return None if decimal else False
     for choice in islice(product(*([None, *names] for names in whole.values())), _CHOICES):
         put = {k: name for k, name in zip(whole, choice, strict=True) if name is not None}
         if all(_fits(text, at, right(at), decimal, put) for at in rounds):
@@ -101,9 +104,10 @@ def holds_with_other_numbers(
     return False
 
 
-def _as_they_are(text: Written, at: dict[str, Array], target: Array) -> bool:
+def _gap(text: Written, at: dict[str, Array], target: Array) -> float:
+    """The largest difference of a text as it is from what is wanted, relative to that."""
     scale = float(np.max(np.abs(target))) or 1.0
-    return float(np.max(np.abs(text.values(at) - target))) <= TOLERANCES.formula_agrees * scale
+    return float(np.max(np.abs(text.values(at) - target))) / scale
 
 
 def _fits(
@@ -234,13 +238,14 @@ def elsewhere(
     right = derived.tree(derived.held(poly, tree.names(text.node)))
     states = [derived.another(seed) for seed in (11, 12, 13)]
     at = as_rods(derived.anywhere(10), text, derived)
-    target = np.broadcast_to(tree.evaluate(right, at), np.shape(next(iter(at.values()))))
-    scale = float(np.max(np.abs(target))) or 1.0
-    gap = float(np.max(np.abs(text.values(at) - target))) / scale
+
+    def whole(at: Mapping[str, Array]) -> Array:
+        return np.asarray(tree.evaluate(right, dict(at)))
+
+    gap = _gap(text, at, whole(at))
     if gap <= TOLERANCES.formula_agrees:
         return [], 0.0
     own = {name: float(value) for name, value in derived.values.items()}
-    whole = lambda x: tree.evaluate(right, dict(x))  # noqa: E731
     missing = tree.names(right) & set(names.parameters) - tree.names(text.node)
 
     def held(at: dict[str, Array]) -> dict[str, Array]:
@@ -250,14 +255,15 @@ def elsewhere(
         return as_rods(held(at), text, derived)
 
     # what has no name in the text may be there as a number, or be a rod's
+    known = True
     for there in (dict, held, rods) if missing else (dict,):
-        if holds_with_other_numbers(text, whole, map(there, states), own):
+        holds = holds_with_other_numbers(text, whole, map(there, states), own)
+        if holds:
             return _kept(text, right, own, at, missing, derived), 0.0
+        known = known and holds is not None
     plain = all(n.value.denominator <= 12 for _, n in tree.nodes(text.node) if n.op == "num")
-    decimals = any(one.half > 0 and not one.whole for one in text.literals)
-    if decimals and len(text.literals) > FREE:  # too many to ask which of them are the robot's
-        plain = False
-    return _kept(text, right, own, at, missing, derived) if missing else [], gap if plain else 0.0
+    told = gap if plain and known else 0.0
+    return _kept(text, right, own, at, missing, derived) if missing else [], told
 
 
 def unnamed(text: Written | None, derived: Reference, poly: Any) -> set[str]:
@@ -337,15 +343,11 @@ def without_turns(case: Case, engine: Array) -> tuple[Case, tuple[str, ...]]:
     hand = case.hand
     if case.quantity.name not in ANGLES or hand.shape != engine.shape:
         return case, ()
-    with np.errstate(invalid="ignore"):
-        turns = np.rint((hand - engine) / (2 * np.pi))
-    if not np.isfinite(turns).all() or not turns.any():
+    turned = less_turns(hand, engine)
+    if not np.isfinite(turned).all() or np.array_equal(turned, hand):
         return case, ()
-    return replace(case, hand=hand - 2 * np.pi * turns), (turned_round(),)
-
-
-def turned_round() -> str:
-    return _("the angle differs by whole turns (2*pi) in places: it is the same angle")
+    said = _("the angle differs by whole turns (2*pi) in places: it is the same angle")
+    return replace(case, hand=turned), (said,)
 
 
 def _own_error(case: Case, engine: Array) -> tuple[float, float]:

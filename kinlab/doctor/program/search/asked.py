@@ -12,7 +12,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes, relative_errors
 from kinlab.doctor.bytecode.syntax import nodes
-from kinlab.doctor.changes import ANGLES, ANY_ZERO, Case
+from kinlab.doctor.changes import ANGLES, ANY_ZERO, Case, less_turns
 from kinlab.doctor.program.trial import TURNS, Trial, named_in, quietly
 from kinlab.errors import KinlabError
 from kinlab.formulas.record import state_by_state
@@ -112,9 +112,7 @@ class Asked:
             wanted: what is right there.
         """
         if self.case.quantity.name in ANGLES:
-            with np.errstate(invalid="ignore"):
-                turns = np.rint((values - wanted) / (2 * np.pi))
-            return np.asarray(values - 2 * np.pi * turns)
+            return less_turns(values, wanted)
         if self.case.quantity.name not in ANY_ZERO:
             return values
         firsts = np.take(values, [0], axis=values.ndim - wanted.ndim)
@@ -177,16 +175,14 @@ class Asked:
     def error(self, which: range) -> float:
         """The largest relative error at some states of the program as it stands now."""
         values = self.values(which)
-        return np.inf if values is None else self.error_of(values, which)
+        if values is None:
+            return np.inf
+        gap = np.abs(values - self.wanted[list(which)]).reshape(len(which), -1)
+        return float(np.max(gap.max(axis=1, initial=0.0) / self.sizes[list(which)]))
 
     def fits(self) -> bool:
         """Whether the program as it stands now is right at every state."""
         return self.error(range(len(self.wanted))) <= self.allowed
-
-    def error_of(self, values: Array, which: range) -> float:
-        """The largest relative error of answers at some states."""
-        gap = np.abs(values - self.wanted[list(which)]).reshape(len(which), -1)
-        return float(np.max(gap.max(axis=1, initial=0.0) / self.sizes[list(which)]))
 
     def distinct(self) -> int:
         """How many different answers there are at the first states; solutions are several."""
