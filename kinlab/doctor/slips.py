@@ -46,11 +46,13 @@ def slips_in(
     """Causes that are slips of the pen in the entries that are off, or what is known of some."""
     defined: list[Slip] = []
     every = off
-    while len(defined) < LIST and (one := _defined(case, every, off, written)) is not None:
+    some = [*_definitions(case, every, off, written)]
+    while len(defined) < LIST and (one := _defined(case, every, off, some, written)) is not None:
         defined.append(one)
         written = _defined_otherwise(written, one)
         off = _still_off(case, every, written)
-    some = [] if defined else [*_definitions(case, every, off, written)]
+        some = [*_definitions(case, every, off, written)]
+    some = [] if defined else some
     asked = {entry.label: entry for entry, _one in some}
     few = {x for x, one in asked.items() if not of_entry(case, one, written[x], _PAIR)}
     open_ = [(entry, one) for entry, one in some if entry.label in few]
@@ -102,7 +104,11 @@ def _per_entry(
 
 
 def _defined(
-    case: Case, every: list[AnswerEntry], off: list[AnswerEntry], written: dict[str, Written]
+    case: Case,
+    every: list[AnswerEntry],
+    off: list[AnswerEntry],
+    definitions: list[tuple[AnswerEntry, Definitions]],
+    written: dict[str, Written],
 ) -> Slip | None:
     """A slip in a definition that makes more right than one in a formula would.
 
@@ -111,7 +117,7 @@ def _defined(
     """
     found: list[tuple[int, Slip]] = []
     told = set[str]()
-    for entry, some in _definitions(case, every, off, written):
+    for entry, some in definitions:
         for slip in some.single() if entry.label not in told else ():
             left = _still_off(case, every, _defined_otherwise(written, slip))
             if len(left) >= len(off):

@@ -123,6 +123,11 @@ class Definitions:
         """What may be changed in the definitions."""
         return [_part(self.line, name) for name in self.names]
 
+    @cached_property
+    def formula(self) -> _Part:
+        """What may be changed in the formula itself."""
+        return _part(self.line, "")
+
     def single(self) -> Iterator[Slip]:
         """Changes of one definition with which the formula is right."""
         for part in self.parts:
@@ -137,10 +142,9 @@ class Definitions:
         """
         few = {name: x[:_FEW] for name, x in self.line.at.items()}
         found: list[tuple[float, int, tuple[Slip, ...]]] = []
-        formula = _part(self.line, "")
         for n, part in enumerate(self.parts):
             instead = _Instead(part.name, part.values[:_MOST, :_FEW], few)
-            for other in (formula, *self.parts[n + 1 :]):
+            for other in (self.formula, *self.parts[n + 1 :]):
                 for k, new in enumerate(other.texts[:_MOST]):
                     whole = instead.of(_put(self.line.text, other.name, new))
                     for j in map(int, self._right(whole, self.line.target[:_FEW])):
@@ -152,8 +156,7 @@ class Definitions:
 
     def with_two_more(self) -> Iterator[tuple[Slip, ...]]:
         """Changes of a definition beside which two of what stands in the formula are right."""
-        formula = _part(self.line, "")
-        plain = sum(one.kind not in _ADDED for one in formula.changes)
+        plain = sum(one.kind not in _ADDED for one in self.formula.changes)
         most = _NOTED // max(plain, 1) // max(len(self.parts), 1)
         for part in self.parts:
             for k, new in enumerate(part.texts[:most]):

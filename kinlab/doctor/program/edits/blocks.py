@@ -28,6 +28,7 @@ def of_blocks(
     part: int, tree: ast.FunctionDef, scope: Scope, observed: Observed
 ) -> Iterator[ProgramEdit]:
     """Statements of one part in other places."""
+    empty = _never_filled(tree)
     for node in nodes(tree):
         for name in ("body", "orelse"):
             block = getattr(node, name, None)
@@ -37,7 +38,7 @@ def of_blocks(
                 yield from _twice(part, node, name, block)
                 yield from _beside(part, node, name, block, scope)
                 yield from _of_twins(part, node, name, block)
-                yield from _never_filled(part, tree, node, name, block, scope)
+                yield from _filling(part, node, name, block, scope, empty)
                 yield from _of_unused(part, tree, node, name, block, scope)
         if isinstance(node, ast.For | ast.While):
             yield from _updates(part, tree, node, scope, observed)
@@ -242,15 +243,8 @@ def _beside(
                 yield _missing(part, node, name, block, at + 1, turned, 1.16)
 
 
-def _never_filled(
-    part: int,
-    tree: ast.FunctionDef,
-    node: ast.AST,
-    name: str,
-    block: list[ast.stmt],
-    scope: Scope,
-) -> Iterator[ProgramEdit]:
-    """What is made as zeros and never filled: ``Jw[:, j] = z`` behind ``Jv[:, j] = ...``."""
+def _never_filled(tree: ast.FunctionDef) -> list[str]:
+    """The names of what is made as zeros and never filled."""
     filled = {one.id for one in written_into(tree)}
     made = {
         one.id
@@ -260,12 +254,19 @@ def _never_filled(
         for one, value in paired(target, line.value)
         if isinstance(one, ast.Name) and isinstance(value, ast.Call) and called(value) == "zeros"
     }
+    return sorted(made - filled)
+
+
+def _filling(
+    part: int, node: ast.AST, name: str, block: list[ast.stmt], scope: Scope, empty: list[str]
+) -> Iterator[ProgramEdit]:
+    """A line that fills what nothing fills: ``Jw[:, j] = z`` behind ``Jv[:, j] = ...``."""
     for at, line in enumerate(block):
         target = next(iter(_targets(line)), None)
         if not isinstance(target, ast.Subscript) or not isinstance(target.value, ast.Name):
             continue
         shape = scope.shapes.get(target.value.id)
-        for other in sorted(made - filled):
+        for other in empty:
             if shape is None or len(shape) != 2 or scope.shapes.get(other) != shape:
                 continue
             for _text, vector in scope.simple(shape[:1]):

@@ -122,12 +122,7 @@ class OtherArms:
 
     def _sets_a_number(self, edit: ProgramEdit) -> bool:
         """Whether an edit gives the program a number that may be this arm's."""
-        if edit.part == DATA or edit.of_the_arm:
-            return True
-        robot = self.asked.case.robot
-        if edit.numbers is None or self._counts(edit):
-            return False
-        return is_own(robot, edit.numbers[1])
+        return edit.part == DATA or self._sets_own(edit)
 
     def _sets_own(self, edit: ProgramEdit) -> bool:
         """Whether an edit puts a number of this arm's in."""

@@ -133,10 +133,7 @@ def _makes_one_of(rows: list[Array], edit: ProgramEdit) -> bool:
                 values[change.field] = change.new
     else:
         values = [*first.new] if isinstance(first.new, tuple) else []
-    if len(values) < _ROW or not all(isinstance(x, int | float) for x in values):
-        return False
-    new = np.array(values, dtype=float)
-    return any(own.shape == new.shape and np.allclose(own, new) for own in rows)
+    return _is_one_of(rows, values)
 
 
 def _moves_one_of(rows: list[Array], edit: ProgramEdit) -> bool:
@@ -148,10 +145,14 @@ def _moves_one_of(rows: list[Array], edit: ProgramEdit) -> bool:
         values = edit.changes[0].holder if isinstance(edit.changes[0].holder, list) else []
     else:
         values = [getattr(one, "value", None) for one in getattr(row, "elts", ())]
+    return _is_one_of(rows, values)
+
+
+def _is_one_of(rows: list[Array], values: list[Any]) -> bool:
     if len(values) < _ROW or not all(isinstance(x, int | float) for x in values):
         return False
-    written = np.array(values, dtype=float)
-    return any(own.shape == written.shape and np.allclose(own, written) for own in rows)
+    typed = np.array(values, dtype=float)
+    return any(own.shape == typed.shape and np.allclose(own, typed) for own in rows)
 
 
 def _named_numbers(trial: Trial) -> set[int]:
