@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import replace
+from functools import cache
 from itertools import product
 
 import numpy as np
@@ -117,14 +118,18 @@ def _defined(
     """
     found: list[tuple[int, Slip]] = []
     told = set[str]()
+
+    @cache
+    def alone(entry: AnswerEntry) -> list[Slip]:
+        return of_entry(case, entry, written[entry.label], 1)
+
     for entry, some in definitions:
         for slip in some.single() if entry.label not in told else ():
             left = _still_off(case, every, _defined_otherwise(written, slip))
             if len(left) >= len(off):
                 continue
-            text = written[entry.label]
             # of what is right by one change of a definition, only one of the formula is as simple
-            if len(left) < len(off) - 1 or _is_simpler(slip, of_entry(case, entry, text, 1)):
+            if len(left) < len(off) - 1 or _is_simpler(slip, alone(entry)):
                 slip = slip.with_error(entry.error(slip.values, entry.engine))
                 found.append((len(left), slip))
                 told.add(entry.label)
