@@ -67,6 +67,18 @@ def test_slips_are_told_where_they_are(robot, entry, text, slips) -> None:
         assert piece in shown, str(found)
 
 
+@pytest.mark.parametrize(
+    "text", ["d, where d = I2 + m2*lc2", "m2*lc2 + m2*l1*cos(q2)", "I2 + m2*lc2 + m2*lc2*cos(q2)"]
+)
+def test_a_factor_that_is_zero_is_never_what_is_missing(text: str) -> None:
+    """I1 and I2 are zero of an arm with point masses: such a factor would take a term out."""
+    found = kl.diagnose("planar2r", "M12", text)
+    assert found.causes
+    told = found.causes[0].sentence
+    assert "factor I1" not in told and "factor I2" not in told, str(found)
+    assert "I1*" not in str(found) and "I2*" not in str(found), str(found)
+
+
 def test_a_definition_that_a_right_formula_uses_is_not_blamed() -> None:
     """Of two formulas with one name, where one is right, the slip is in the other itself."""
     file = {"b": "m2*l1*lc2", "M12": "I2 + m2*lc2 + b*cos(q2)", "M21": "I2 + m2*lc2**2 + b*cos(q2)"}

@@ -213,14 +213,14 @@ class Line:
 
     @cached_property
     def atoms(self) -> dict[str, Array]:
-        """Names of numbers that may stand in the text, with their values."""
+        """Names of numbers that may stand in the text, with their values: none that is nothing."""
         found: dict[str, Array] = {}
         for name in self.text.symbols:
             digits = name in self.text.numbers and not self.text.symbols[name].isidentifier()
             if digits or not name.isidentifier() or keyword.iskeyword(name):
                 continue
-            if not self.turns(name):
-                found[name] = self._named(name)
+            if not self.turns(name) and np.any(value := self._named(name)):
+                found[name] = value  # a factor that is zero takes a term out
         mine = set(self.spelling)
         for name in (*self.names.parameters, *self.names.loads):
             if name not in mine:
