@@ -19,6 +19,7 @@ from kinlab.doctor.entries import terms
 from kinlab.doctor.entries.definitions import Definitions
 from kinlab.doctor.entries.terms import Slip
 from kinlab.doctor.linkages.looked_up import Reference, reference_of
+from kinlab.doctor.text.line import Line, words_in
 from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import numbers_at
 from kinlab.host.language import _
@@ -36,6 +37,7 @@ _FLOOD = 8
 """Slips in all entries together above which a list of them is no diagnosis."""
 _TIED = 5
 """Slips of one entry that are kept as alternatives."""
+_LOST = "missing factor"
 _UNDONE = {"sign", "transposed", "row order", "inverse", "rotation transposed", "joint order"}
 _UNDONE |= {"row sign", "column sign", "rows swapped"}
 """Readings of the answer that are their own inverse."""
@@ -129,7 +131,7 @@ def _defined(
             if len(left) >= len(off):
                 continue
             # of what is right by one change of a definition, only one of the formula is as simple
-            if len(left) < len(off) - 1 or _is_simpler(slip, alone(entry)):
+            if len(left) < len(off) - 1 or _is_simpler(slip, alone(entry), some.line):
                 slip = slip.with_error(entry.error(slip.values, entry.engine))
                 found.append((len(left), slip))
                 told.add(entry.label)
@@ -203,9 +205,23 @@ def _as_read(
     return text, apart(case, entry, text, poly)
 
 
-def _is_simpler(slip: Slip, others: list[Slip]) -> bool:
-    """Whether a slip says in fewer words what is wrong than others of the same entry."""
-    return all(len(slip.kinds) < len(one.kinds) for one in others)
+def _is_simpler(slip: Slip, others: list[Slip], line: Line) -> bool:
+    """Whether a slip in a definition says in fewer words what is wrong than others of the line.
+
+    Of as many words the likelier; a factor that a name lacks was lost where the name was set.
+    """
+    assert slip.defined is not None
+    name, new = slip.defined
+    lost = {*words_in(new)} - {*words_in(line.text.symbols[name])}
+    of_name = not any(map(line.turns, lost))
+
+    def beaten(one: Slip) -> bool:
+        if len(slip.kinds) == len(one.kinds):
+            both = slip.kinds == one.kinds == (_LOST,) and of_name
+            return both or slip.cost < one.cost
+        return len(slip.kinds) < len(one.kinds)
+
+    return all(map(beaten, others))
 
 
 def _defined_otherwise(written: dict[str, Written], slip: Slip) -> dict[str, Written]:

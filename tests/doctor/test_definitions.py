@@ -105,3 +105,19 @@ def test_what_is_shown_is_right_for_any_numbers(seed: int) -> None:
         assert sympy.expand(sympy.sympify(text.replace("^", "**"), names)) == sympy.expand(
             sympy.sympify(right[name], names)
         )
+
+
+@pytest.mark.parametrize(
+    ("entry", "text", "shown"),
+    [
+        pytest.param("M12", "d + m2*l1*lc2*cos(q2), d = I2 + m2*lc2", "lc2**2", id="a power, of a moment that is zero"),
+        pytest.param("M11", "m1*lc1**2 + I1 + I2*(l1**2 + lc2**2 + 2*l1*lc2*cos(q2))", "I2 should be m2", id="a moment that is zero for a mass"),
+        pytest.param("M12", "m2*lc2**2 + I2", "m2*l1*lc2*cos(q2)", id="a length, and no centre that is as far"),
+        pytest.param("M12", "m2*lc2**2 + I2 + l2*cos(q2)*m2", "factor l1", id="a factor, and no centre that is as far"),
+        pytest.param("C11", "h*qd2, h = -m2*l1*sin(q2)", "h: the factor l2", id="a factor where the name was set"),
+    ],
+)  # fmt: skip
+def test_what_is_equal_by_this_arms_numbers_alone_decides_nothing(entry, text, shown) -> None:
+    """Of point masses I2 = 0 and lc1 = l1: a cause is one for any arm."""
+    found = kl.diagnose("planar2r", entry, text)
+    assert found.causes and shown in found.causes[0].sentence, str(found)

@@ -127,6 +127,8 @@ def _name(line: Line, place: Place, name: str) -> None:
                 cost = 1.3 if _beside_a_length(line, place) else 1.1
                 cost = 1.4 if _halves_lengths(line) and word not in words_in(line.source) else cost
             line.instead(place, word, value, "index" if near else "parameter", cost)
+            if not np.any(place.value):
+                continue  # what is added to nothing comes instead of it
             more, less = f"({name} + {word})", f"({name} - {word})"
             line.instead(place, more, place.value + value, "missing term", 1.5)
             line.instead(place, less, place.value - value, "missing term", 1.7)

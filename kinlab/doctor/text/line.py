@@ -194,11 +194,17 @@ class Line:
         """The robot's names as the writer has them: q1 is theta1, l1 is L."""
         found = dict(self.text.spelled)
         for name, meaning in self.text.symbols.items():
-            if re.fullmatch(r"[A-Za-z_]\w*", meaning) and name not in self.text.known:
+            if meaning.isidentifier() and name not in self.text.known and not self._by_chance(name):
                 found.setdefault(meaning, name)
         for meaning, word in joint_spelling(words_in(self.source), self.names.n).items():
             found.setdefault(meaning, word)
         return {**self.names.spelling, **found}
+
+    def _by_chance(self, name: str) -> bool:
+        """Whether a name is a centre's that nobody typed: of a point mass a length is as long."""
+        typed = name in words_in(self.source) or name in self.text.definitions
+        length = self.text.symbols[name] in self.names.parameters
+        return length and not typed and bool(_CENTRE.fullmatch(name))
 
     @cached_property
     def short(self) -> bool:
@@ -218,6 +224,8 @@ class Line:
         for name in self.text.symbols:
             digits = name in self.text.numbers and not self.text.symbols[name].isidentifier()
             if digits or not name.isidentifier() or keyword.iskeyword(name):
+                continue
+            if self._by_chance(name):
                 continue
             if not self.turns(name) and np.any(value := self._named(name)):
                 found[name] = value  # a factor that is zero takes a term out
@@ -380,6 +388,7 @@ def _in_proportion(old: Array, new: Array) -> bool:
 
 
 _POSITION = re.compile(r"q\d+")
+_CENTRE = re.compile(r"(?:[lL]_?c|r_?c?)_?\d+")
 _LONGEST = 90
 """Letters of a piece of a formula in a sentence above which its middle is left out."""
 
