@@ -17,6 +17,7 @@ from kinlab.formulas.tree import Node
 from kinlab.model.dh import DHTable
 from kinlab.symbolic import dynamics, fourier, kinematics
 from kinlab.symbolic.arm import SymbolicArm, arm
+from kinlab.symbolic.determinant import det_poly
 from kinlab.symbolic.kinematics import Grid
 from kinlab.symbolic.trig import Poly, TrigRing
 from kinlab.symbolic.vocabulary import is_planar
@@ -90,6 +91,8 @@ _OF_MORE = 100
 """Terms of an entry of M, C, g or tau up to which an arm of more than three joints is derived: of a
 SCARA they are few, of others too many to search for a slip in."""
 _KINEMATIC_JOINTS = 7
+_ROWS = 6
+"""Rows of a Jacobian."""
 _FACTORED = 20
 """Terms of one entry up to which its factors are looked for."""
 POINTS = 24
@@ -111,23 +114,9 @@ def _planar_pose(a: SymbolicArm) -> Any:
     return [pose[0][3], pose[1][3], pose[0][0], pose[1][0]]
 
 
-def _determinant(a: SymbolicArm, rows: tuple[int, ...]) -> Poly | None:
+def _determinant(a: SymbolicArm, rows: tuple[int, ...] | None) -> Poly | None:
     """det of some rows of J, of arms with as many joints."""
-    if a.n != len(rows):
-        return None
-    grid = _jacobian("base")(a)
-    square = [grid[r] for r in rows]
-
-    def minor(part: list[list[Poly]]) -> Poly:
-        if len(part) == 1:
-            return part[0][0]
-        total = a.trig.ring.zero
-        for k, front in enumerate(part[0]):
-            rest = [[x for j, x in enumerate(row) if j != k] for row in part[1:]]
-            total += (-1) ** k * front * minor(rest)
-        return a.trig.reduce(total)
-
-    return minor(square)
+    return det_poly(a, rows) if a.n == len(rows or range(a.n)) <= _ROWS else None
 
 
 def _coriolis_torques(a: SymbolicArm) -> Any:
@@ -167,6 +156,7 @@ _KINEMATIC: dict[str, Callable[[SymbolicArm], Any]] = {
     "jacobian_tool": _jacobian("tool"),
     "jacobian_spatial": _jacobian("spatial"),
     "planar_pose": _planar_pose,
+    "jacobian_determinant": lambda a: _determinant(a, None),
     "planar_determinant": lambda a: _determinant(a, (0, 1, 5)),
     "planar_position_determinant": lambda a: _determinant(a, (0, 1)),
     "planar_jacobian": lambda a: [_jacobian("base")(a)[r] for r in (0, 1, 5)],

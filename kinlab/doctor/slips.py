@@ -38,6 +38,7 @@ _FLOOD = 8
 _TIED = 5
 """Slips of one entry that are kept as alternatives."""
 _LOST = "missing factor"
+_FUNCTIONS = {"sin", "cos", "tan"}
 _UNDONE = {"sign", "transposed", "row order", "inverse", "rotation transposed", "joint order"}
 _UNDONE |= {"row sign", "column sign", "rows swapped"}
 """Readings of the answer that are their own inverse."""
@@ -208,7 +209,8 @@ def _as_read(
 def _is_simpler(slip: Slip, others: list[Slip], line: Line) -> bool:
     """Whether a slip in a definition says in fewer words what is wrong than others of the line.
 
-    Of as many words the likelier; a factor that a name lacks was lost where the name was set.
+    Of as many words the likelier; a factor that a name lacks was lost where the name was set, and
+    what would come instead of its sine, or of itself, is what it should be.
     """
     assert slip.defined is not None
     name, new = slip.defined
@@ -218,7 +220,8 @@ def _is_simpler(slip: Slip, others: list[Slip], line: Line) -> bool:
     def beaten(one: Slip) -> bool:
         if len(slip.kinds) == len(one.kinds):
             both = slip.kinds == one.kinds == (_LOST,) and of_name
-            return both or slip.cost < one.cost
+            itself = one.replaced and {*words_in(one.replaced[0])} - _FUNCTIONS == {name}
+            return bool(both or itself) or slip.cost < one.cost
         return len(slip.kinds) < len(one.kinds)
 
     return all(map(beaten, others))

@@ -73,8 +73,9 @@ _SIGNS = WIDE | str.maketrans(
     {"·": "*", "⋅": "*", "×": "*", "−": "-", "–": "-", "÷": "/", "√": " sqrt", "½": "(1/2)"}
 )
 _LETTERS = (
-    "α alpha β beta γ gamma δ delta θ theta ϑ theta λ lambda π pi μ mu φ phi ϕ phi ψ psi ω omega "
-    "ρ rho τ tau ℓ l"
+    "α alpha β beta γ gamma δ delta ε epsilon ϵ epsilon ζ zeta η eta θ theta ϑ theta ι iota "
+    "κ kappa λ lambda μ mu ν nu ξ xi π pi ρ rho σ sigma τ tau υ upsilon φ phi ϕ phi χ chi ψ psi "
+    "ω omega Γ Gamma Δ Delta Θ Theta Λ Lambda Ξ Xi Φ Phi Ψ Psi Ω Omega ℓ l"
 )
 _GREEK = dict(zip(_LETTERS.split()[::2], _LETTERS.split()[1::2], strict=True))
 _ALONE = re.compile(

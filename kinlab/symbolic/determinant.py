@@ -95,6 +95,15 @@ def det_jacobian(arm: SymbolicArm, rows: tuple[int, ...] | None = None) -> Deter
     return Determinant(sign * constant, tuple(ordered), chosen, complete)
 
 
+def det_poly(arm: SymbolicArm, rows: tuple[int, ...] | None = None) -> Poly:
+    """As :func:`det_jacobian`, multiplied out."""
+    sign, blocks = _blocks(_sparsest(arm, _read_rows(arm, rows)))
+    total = sign * arm.trig.ring.one
+    for block in blocks:
+        total = arm.trig.reduce(total * _determinant(arm, block))
+    return total
+
+
 def _read_rows(arm: SymbolicArm, rows: tuple[int, ...] | None) -> tuple[int, ...]:
     if rows is not None:
         if (

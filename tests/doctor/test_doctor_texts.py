@@ -184,8 +184,28 @@ def test_the_angle_of_a_planar_tool_is_a_sum_of_joint_positions(typed, told, rig
 
 
 def test_a_determinant_of_what_has_none_is_refused() -> None:
-    with pytest.raises(kl.errors.ExpressionError, match="names no quantity"):
-        kl.diagnose("spatial3r", "det J", "1")
+    with pytest.raises(kl.errors.StructureError, match="is for arms whose Jacobian is square"):
+        kl.diagnose("panda", "det J", "1")
+
+
+DETERMINANTS = {
+    "spatial3r": "a1*xt*(a2 + xt*c3)*s2*c3",
+    "scara": "l1*l2*sin(theta_2)",
+    "stanford": "d3^2*s2*s5",
+    "puma560": "a2*(a3*s3 + d4*c3)*(a2*c2 + a3*c23 - d4*s23)*s5",
+    "ur5": "a2*a3*(a2*c2 + a3*c23 + d5*s234)*s3*s5",
+}
+"""det J of the first n rows that move, in factors: the books' and note 000's, by hand."""
+
+
+@pytest.mark.parametrize("robot", DETERMINANTS)
+def test_a_determinant_of_an_arm_in_space_is_judged_in_its_factors(robot: str) -> None:
+    right = DETERMINANTS[robot]
+    assert kl.diagnose(robot, "det J", right).agrees
+    slipped = right.replace("s5", "c5").replace("sin(", "cos(")
+    slipped = slipped.replace("s2*c3", "c2*c3")
+    found = kl.diagnose(robot, "det J", slipped)
+    assert not found.agrees and [*found.causes[0].shown.values()] == [right], str(found)
 
 
 def test_what_moves_a_potentials_zero_is_no_slip_beside_one() -> None:

@@ -14,8 +14,10 @@ from kinlab.arrays import Array
 from kinlab.check.quantities.quantity import Quantity
 from kinlab.check.quantities.serial import SERIAL, planar_jacobian, planar_pose, positions
 from kinlab.engine import kinematics, links
+from kinlab.errors import StructureError
 from kinlab.model.link import Convention
 from kinlab.model.robot import Robot, frame_id, scratch
+from kinlab.tolerances import TOLERANCES
 
 _LESS_THAN_HALF = 3.0
 """Less than half a turn, rad."""
@@ -71,6 +73,19 @@ def planar_determinant(robot: Robot, q: Any) -> Any:
 def planar_position_determinant(robot: Robot, q: Any) -> Any:
     """det of the rows vx, vy."""
     return np.linalg.det(kinematics.jacobian(robot, q)[:, :2])
+
+
+def jacobian_determinant(robot: Robot, q: Any) -> Any:
+    """det of the first n rows of J, in base axes, that are not zero everywhere."""
+    states = np.random.default_rng(0).uniform(-1.0, 1.0, (8, robot.n))
+    sizes = np.abs(kinematics.jacobian(robot, states)).max(axis=(0, 2))
+    rows = np.flatnonzero(sizes > TOLERANCES.no_effect * sizes.max())[: robot.n]
+    if len(rows) < robot.n:
+        raise StructureError(
+            f"jacobian_determinant is for arms whose Jacobian is square: the {robot.n} joints of "
+            f"{robot.name!r} move {len(rows)} rows"
+        )
+    return np.linalg.det(kinematics.jacobian(robot, q)[:, rows])
 
 
 def planar_angle(robot: Robot, q: Any) -> Any:
@@ -240,6 +255,12 @@ QUANTITIES = (
         kinematics.jacobian,
         "Jacobian at poses with theta2 = 0 or pi, (6, n)",
         sample=_with_second_joint(0.0, np.pi),
+    ),
+    SERIAL.quantity(
+        "jacobian_determinant",
+        "q",
+        jacobian_determinant,
+        "det of the first n rows of J that are not zero everywhere",
     ),
     _planar_3r("planar_determinant", "q", planar_determinant, "det of rows vx, vy, wz"),
     _planar_2r(

@@ -15,7 +15,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.entries.terms import Slip, slip_of
-from kinlab.doctor.text.alternatives import study
+from kinlab.doctor.text.alternatives import study, study_angle
 from kinlab.doctor.text.line import Change, Line, words_in
 from kinlab.doctor.text.mend import Mended, rewritten, right_with_two
 from kinlab.doctor.text.written import Written
@@ -60,6 +60,8 @@ def _part(line: Line, name: str) -> _Part:
         made = line.text.symbols.keys() - text.symbols.keys()
         own = Line(text, line.names, line.at, text.values(line.at), line.forms)
     study(own)
+    if name:
+        study_angle(own)
     kept: list[tuple[Change, str, Array]] = []
     for one, row in zip(own.changes, own.rows, strict=True):
         new = rewritten(own.source, (one,)) if not one.everywhere else None
@@ -69,7 +71,8 @@ def _part(line: Line, name: str) -> _Part:
             bool(name) and one.kind in _ADDED and not {*words_in(new)} <= {*words_in(own.source)}
         )
         kept.append((replace(one, cost=one.cost + _FOREIGN * foreign), new, row))
-    kept.sort(key=lambda x: (x[0].kind in _ADDED, x[0].cost))  # there are thousands of these
+    # there are thousands of terms and factors that may be added somewhere
+    kept.sort(key=lambda x: (x[0].kind in _ADDED and x[0].start == x[0].end, x[0].cost))
     rows = np.array([row for _one, _new, row in kept]).reshape(len(kept), own.count)
     texts = [new for _one, new, _row in kept]
     return _Part(name, [one for one, _new, _row in kept], texts, own.root.value + rows)

@@ -66,6 +66,7 @@ class Slip:
         error: relative error that is left with the slip repaired.
         typed: the right formula as the writer would type it, where otherwise, or ``""``.
         defined: of a slip in what a name of the writer's stands for, the name and what it should.
+        replaced: the pieces of a text that are replaced as a whole.
     """
 
     entry: str
@@ -78,6 +79,7 @@ class Slip:
     error: float = np.inf
     typed: str = ""
     defined: tuple[str, str] | None = None
+    replaced: tuple[str, ...] = ()
 
     def with_error(self, error: float) -> Slip:
         """The slip with its evidence."""
@@ -163,8 +165,9 @@ def in_text(
         tried += [(line, 1) for line in lines]
     tried += [(line, 2) for line in lines]
     all_ = (*moved, *lines) if most > 2 else ()
+    asked = dict.fromkeys((line, min(count, most)) for line, count in tried if least <= count)
     ways: Iterator[tuple[Line, list[Mended]]] = chain(
-        ((line, mended(line, count)) for line, count in tried if least <= count <= most),
+        ((line, mended(line, count)) for line, count in asked),
         ((line, _part_by_part(line)) for line in all_ if not line.numeric),
         ((line, mended(line)) for line in all_),
         ((line, one_after_another(line)) for line in all_[:_LINES] if not line.numeric),
@@ -365,7 +368,10 @@ def slip_of(written: Written, found: Mended, here: dict[str, Array]) -> Slip:
     values = repaired.values(here)
     text = written.restored(found.text)
     typed = written.typing.corrected(text) if written.typing is not None else ""
-    return Slip(written.entry, kinds, told, text, found.cost, values, True, typed=typed)
+    old = tuple(c.pieces["old"] for c in found.changes if "old" in c.pieces)
+    return Slip(
+        written.entry, kinds, told, text, found.cost, values, True, typed=typed, replaced=old
+    )
 
 
 def turned(written: Written) -> Slip:

@@ -62,6 +62,15 @@ def study(line: Line) -> None:
     throughout(line)
 
 
+def study_angle(line: Line) -> None:
+    """Notes the other angles that a sum of joint positions may be meant for."""
+    node = tree.renamed(parse(line.source), {w: line.meaning(w) for w in words_in(line.source)})
+    if tree.names(node) <= {f"q{i + 1}" for i in range(line.names.n)}:
+        for angle in dict.fromkeys((*line.names.angles, *_beside(line, node))):
+            if angle != node:
+                _node(line, line.root, angle, "argument", 1.2)
+
+
 def study_what_stands(line: Line) -> None:
     """Notes the changes of what stands there: of nothing that is missing."""
     for place in list(line.places):
@@ -91,7 +100,7 @@ def _of_place(line: Line, place: Place) -> bool:
 def _name(line: Line, place: Place, name: str) -> None:
     meant = canonical(name) if name not in line.text.symbols else tree.sym(name)
     if line.turns(name) and name in line.text.symbols:
-        meant = _meaning(line, name)
+        meant = line.meaning(name)
     if meant.op in ("sin", "cos"):
         _wave(line, place, meant)
         return
@@ -223,7 +232,7 @@ def _beside_names(line: Line, place: Place) -> bool:
     while place.above is not None and not is_sum(place.above.node):
         place = place.above
     words = words_in(line.segment(place))
-    return any(not tree.names(_meaning(line, w)).isdisjoint(line.names.parameters) for w in words)
+    return any(not tree.names(line.meaning(w)).isdisjoint(line.names.parameters) for w in words)
 
 
 def _fitting(line: Line, place: Place) -> float:
@@ -243,7 +252,7 @@ def _call(line: Line, place: Place, node: ast.Call) -> None:
     name = node.func.id if isinstance(node.func, ast.Name) else ""
     if name in ("sin", "cos", "tan"):
         inside = parse(ast.unparse(node.args[0]))
-        mapped = {w: _meaning(line, w) for w in tree.names(inside)}
+        mapped = {w: line.meaning(w) for w in tree.names(inside)}
         _wave(line, place, tree.call(name, tree.renamed(inside, mapped)))
     elif name == "sqrt":
         root = line.siblings[id(place)][0]
@@ -252,12 +261,6 @@ def _call(line: Line, place: Place, node: ast.Call) -> None:
         y, x = line.siblings[id(place)]
         turned = f"{name}({line.segment(x)}, {line.segment(y)})"
         line.instead(place, turned, np.arctan2(x.value, y.value), "argument", 1.2)
-
-
-def _meaning(line: Line, word: str) -> Node:
-    """What a name stands for: q1 for th1, q1 + q2 for q12."""
-    inside = parse(line.text.symbols[word]) if word in line.text.symbols else canonical(word)
-    return tree.renamed(inside, {name: canonical(name) for name in tree.names(inside)})
 
 
 def _wave(line: Line, place: Place, wave: Node) -> None:
@@ -305,6 +308,8 @@ def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
         line.edit(place, left.value, (at, end, ""), "extra term", 1.1, told, {"term": term})
         alone = right.value if plus else -right.value
         line.edit(place, alone, (start, at + plus, ""), "extra term", 1.15, told, {"term": first})
+        if plus:
+            _plus_for_times(line, place, at)
         return
     if isinstance(node.op, ast.Pow):
         base = left.value
@@ -336,6 +341,7 @@ def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
     if not any(isinstance(one.node, ast.Constant) for one in (left, right)):
         with np.errstate(all="ignore"):
             line.instead(place, f"{first}/{second}", left.value / right.value, "factor", 1.45)
+    _linear(line, place, left, right)
     told, pieces = line.told(
         place,
         N_("the factor {factor} does not belong"),
@@ -350,6 +356,51 @@ def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
         again = plain and re.search(rf"/\s*\(?{re.escape(factor)}\b", line.segment(kept))
         cost = _UNDONE if again else 1.3
         line.edit(place, kept.value, span, kind, cost, told, pieces | {"factor": factor})
+
+
+def _plus_for_times(line: Line, place: Place, at: int) -> None:
+    """The term in front of a plus multiplied by the one behind it: 2*l1*l2 + c2 for 2*l1*l2*c2."""
+    left, right = line.siblings[id(place)]
+    before, last, value = left, left, left.value * right.value
+    if is_sum(left.node) and ")" not in line.source[left.span[1] : at]:
+        before, last = line.siblings[id(left)]
+        shown = last.value if isinstance(left.node.op, ast.Add) else -last.value
+        value = before.value + shown * right.value
+    old = line.source[last.span[0] : place.span[1]]
+    piece = old[: at - last.span[0]].rstrip(), old[at - last.span[0] + 1 :].lstrip()
+    told = N_("{old} should be {new}")
+    shown_so = {"old": old, "new": "*".join(piece)}
+    line.edit(place, value, (at, at + 1, "*"), "operator", 1.25, told, shown_so)
+
+
+def _linear(line: Line, place: Place, left: Place, right: Place) -> None:
+    """A sine or cosine of a sum taken for the product: s1*s2 for s12."""
+    last = left
+    if is_product(left.node) and isinstance(left.node.op, ast.Mult):
+        last = line.siblings[id(left)][1]
+    one, two = (_as_wave(line, x) for x in (last, right))
+    if one is None or two is None or one.op != two.op or one.args == two.args:
+        return
+    wave = tree.call(one.op, tree.add(*one.args, *two.args))
+    start, end = last.span[0], right.span[1]
+    told, pieces = line.told(
+        place, N_("{old} should be {new}"), N_("{old} should be {new} in {term}")
+    )
+    pieces |= {"old": line.source[start:end], "new": line.spelled(wave)}
+    with np.errstate(all="ignore"):
+        value = place.value / (last.value * right.value) * tree.evaluate(wave, line.at)
+    line.edit(place, value, (start, end, pieces["new"]), "argument", 1.2, told, pieces)
+
+
+def _as_wave(line: Line, place: Place) -> Node | None:
+    """A place that is the sine or cosine of an angle, as such."""
+    node, meant = place.node, None
+    if isinstance(node, ast.Name):
+        meant = line.meaning(node.id)
+    elif isinstance(node, ast.Call):
+        inside = parse(line.segment(place))
+        meant = tree.renamed(inside, {w: line.meaning(w) for w in tree.names(inside)})
+    return meant if meant is not None and meant.op in ("sin", "cos") else None
 
 
 def _is_share(place: Place, left: Place) -> bool:
@@ -494,7 +545,7 @@ def _moves(line: Line, node: ast.expr) -> bool:
     if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow):
         return _moves(line, node.left)
     if isinstance(node, ast.Name):
-        meant = _meaning(line, node.id)
+        meant = line.meaning(node.id)
         word = str(meant.value)
         return meant.op != "sym" or word in line.names.loads or bool(_MOTION.fullmatch(word))
     return isinstance(node, ast.Call) or is_sum(node)

@@ -107,8 +107,8 @@ def quantity_of(entry: str, table: DHTable | None) -> str:
     if level and entry in _ANGLES:  # in the plane x-y of the base, as the engine has them
         return "planar_angle"
     count = len(table.links) if table is not None and level else 0
-    if count in _DETERMINANTS and _DETERMINANT.fullmatch(entry):
-        return _DETERMINANTS[count]
+    if _DETERMINANT.fullmatch(entry) and (level or not planar):
+        return _DETERMINANTS.get(count, "jacobian_determinant")
     turning = _TURNING.fullmatch(entry)
     if turning:
         return f"jacobian[{int(turning.group(1)) + 2},{int(turning.group(2)) - 1}]"

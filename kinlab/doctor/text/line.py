@@ -12,7 +12,7 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from itertools import combinations, combinations_with_replacement
+from itertools import chain, combinations, combinations_with_replacement
 from typing import Any, TypeGuard
 
 import numpy as np
@@ -21,7 +21,7 @@ from kinlab.arrays import Array
 from kinlab.doctor.text.meanings import Meanings, coefficients
 from kinlab.doctor.text.written import Written, operands
 from kinlab.formulas import tree
-from kinlab.formulas.text import SHORTHAND, joint_spelling, respelled
+from kinlab.formulas.text import SHORTHAND, canonical, joint_spelling, parse, respelled
 from kinlab.formulas.tree import Node
 from kinlab.host.language import N_, _
 from kinlab.tolerances import TOLERANCES
@@ -196,7 +196,8 @@ class Line:
         for name, meaning in self.text.symbols.items():
             if meaning.isidentifier() and name not in self.text.known and not self._by_chance(name):
                 found.setdefault(meaning, name)
-        for meaning, word in joint_spelling(words_in(self.source), self.names.n).items():
+        typed = [*words_in(self.source), *chain(*map(words_in, self.text.symbols.values()))]
+        for meaning, word in joint_spelling(typed, self.names.n).items():
             found.setdefault(meaning, word)
         return {**self.names.spelling, **found}
 
@@ -212,8 +213,35 @@ class Line:
         words = words_in(self.source)
         return any(SHORTHAND.fullmatch(w) for w in words) and not {"sin", "cos"} & set(words)
 
+    def meaning(self, word: str) -> Node:
+        """What a name stands for: q1 for th1, q1 + q2 for q12."""
+        own = self.text.symbols
+        if word not in own:
+            return canonical(word)
+        inside = parse(own[word])
+        return tree.renamed(inside, {name: self.meaning(name) for name in tree.names(inside)})
+
+    @cached_property
+    def sums(self) -> dict[Node, Node]:
+        """Sums of joint positions for which the writer has a name: phi for q1 + q2."""
+        found: dict[Node, Node] = {}
+        for name in self.text.symbols:
+            node = self.meaning(name)
+            if node.op == "add" and all(_POSITION.fullmatch(str(a.value)) for a in node.args):
+                found.setdefault(node, tree.sym(name))
+        return found
+
+    def _summed(self, node: Node) -> Node:
+        """A piece of a formula with the writer's names of sums of joint positions."""
+        for some, name in self.sums.items() if node.op == "add" else ():
+            if {*some.args} <= {*node.args}:
+                return tree.add(name, *(one for one in node.args if one not in some.args))
+        args = tuple(map(self._summed, node.args))
+        return node if args == node.args else Node(node.op, args, node.value)
+
     def spelled(self, node: Node) -> str:
         """A piece of a formula as the writer would write it."""
+        node = self._summed(node) if self.sums else node
         plain = tree.to_text(respelled(node, self.spelling, self.short))
         return re.sub(r" ([-+]) ", rf"{self.gap}\1{self.gap}", plain)
 

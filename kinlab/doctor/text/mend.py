@@ -292,12 +292,15 @@ def _nested(source: str, changes: Sequence[Change]) -> list[Change]:
     wide = sorted(changes, key=lambda c: c.start - c.end)
     for k, outer in enumerate(wide):
         piece = source[outer.start : outer.end]
-        if len(piece) < 2 or outer.new.count(piece) != 1 or outer.everywhere:
+        if len(piece) < 2 or outer.everywhere:
             continue
+        kept = [*re.finditer(rf"(?<!\w){re.escape(piece)}(?!\w)", outer.new)]
+        if len(kept) != 1:
+            continue  # Ia1 for a1 keeps no a1
         inner = [c for c in wide[k + 1 :] if outer.start <= c.start and c.end <= outer.end]
         others = [c for c in changes if c is not outer and c not in inner]
         if inner and not any(c.everywhere for c in inner) and not _overlap(inner):
-            at = outer.new.index(piece) - outer.start
+            at = kept[0].start() - outer.start
             new = outer.new
             for c in sorted(inner, key=lambda c: -c.start):
                 new = new[: at + c.start] + c.new + new[at + c.end :]

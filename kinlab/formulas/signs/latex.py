@@ -40,10 +40,16 @@ _EXTREMES = (r"\max", r"\min")
 _ANGLE = re.compile(r"(?:q|theta)[1-9]\d?")
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9]*")
 _PLAIN = re.compile(r"\d+(?:\.\d+)?|pi")
-_LETTERS = "alpha beta gamma delta theta Theta lambda mu phi psi omega rho tau"
+LAMBDA = "lam"
+"""What the letter is called in plain text, where its own name is a word of the language."""
+_LETTERS = (
+    "alpha beta gamma delta epsilon zeta eta theta Theta iota kappa mu nu xi rho sigma tau upsilon "
+    "phi chi psi omega Gamma Delta Lambda Xi Phi Psi Omega"
+)
 _GREEK = {rf"\{name}": name for name in _LETTERS.split()}
+_GREEK[r"\lambda"] = LAMBDA
 _GREEK[r"\pi"] = "pi"
-_GREEK |= {rf"\var{name}": name for name in ("theta", "phi", "rho")}
+_GREEK |= {rf"\var{name}": name for name in ("theta", "phi", "rho", "epsilon", "kappa")}
 _THETAS = ([r"\theta"], [r"\vartheta"])
 _JOINTS = "123456789"
 """The joints whose angles a sum of angles has, ascending and without a gap."""
