@@ -35,9 +35,9 @@ from kinlab.doctor.verdicts import numbers_at
 from kinlab.errors import ExpressionError, FileError, KinlabError, NameUnknownError
 from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree
+from kinlab.formulas.files import FormulaFile, formula_file
 from kinlab.formulas.lines import Lines, read_lines
 from kinlab.formulas.signs.refusals import refused
-from kinlab.formulas.text import FormulaFile, formula_file
 from kinlab.host.files import read_text
 from kinlab.host.language import N_, _
 

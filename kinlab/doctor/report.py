@@ -30,19 +30,10 @@ from kinlab.doctor.text.claims import claimed_of
 from kinlab.errors import ExpressionError, KinlabError
 from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree
+from kinlab.formulas.files import FormulaFile, alone, entries_of, formula_file, with_entries
 from kinlab.formulas.marks import differences
 from kinlab.formulas.record import AnswerShapeError, function_name, state_by_state
-from kinlab.formulas.text import (
-    SHORTHAND,
-    FormulaFile,
-    alone,
-    entries_of,
-    formula_file,
-    joint_spelling,
-    parse,
-    respelled,
-    with_entries,
-)
+from kinlab.formulas.text import SHORTHAND, joint_spelling, parse, respelled
 from kinlab.formulas.tree import Node
 from kinlab.formulas.tree import Path as Way
 from kinlab.formulas.typeset import Marks, equation

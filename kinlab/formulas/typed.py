@@ -652,7 +652,7 @@ def readings(text: str, entry: str) -> list[str]:
         return [f"{dollars}{part}{dollars}" for part in reversed(parts)]
     if not 2 <= len(parts) <= _LONGEST_CHAIN or any(part[-1:] in ("", *"<>!") for part in parts):
         return [text]
-    names = [part for part in parts if _is_name(part)]
+    names = [part for part in parts if is_name(part)]
     formulas = [part for part in parts if part not in names] or parts[-1:]
     left = next((name for name in names if _begins_with(f"{name} =", entry)), "")
     strange = any(name != left and not _also(name, entry) for name in names)
@@ -671,10 +671,22 @@ def _is_formula(text: str) -> bool:
     return bool(_STARTS_FORMULA.match(text) or "+" in text or "*" in text or len(words) > 2)
 
 
-def _is_name(text: str) -> bool:
+def is_name(text: str) -> bool:
     """Whether a side of an equation is a name alone: ``M_{21}``, ``\\tau_2``, not ``-y``."""
     with suppress(ExpressionError):
         return "∂" not in text and bool(_NAME.fullmatch(entry_name(text.strip("& "))))
+    return False
+
+
+def is_name_of(name: str, entry: str) -> bool:
+    """Whether a name in a formula is the entry's own: tau of an arm's only joint, too."""
+    with suppress(ExpressionError):
+        (head, places), (mine, wanted) = map(
+            _head_and_places, (entry_name(name), entry_name(entry))
+        )
+        known = [group for group in _MEANT if head in group]
+        same = head == mine or any(mine in group for group in known)
+        return same and (places == wanted or (head == "tau" and not places and wanted == "1"))
     return False
 
 
@@ -690,7 +702,7 @@ def _also(name: str, entry: str) -> bool:
 
 def turned(left: str, right: str, entry: str) -> bool:
     """Whether the entry's own name stands behind the sign of equality, and no name before it."""
-    return bool(left) and _begins_with(f"{right.strip('$ ')} =", entry) and not _is_name(left)
+    return bool(left) and _begins_with(f"{right.strip('$ ')} =", entry) and not is_name(left)
 
 
 def claims(text: str, entry: str = "", writing: Hand | None = None) -> str:

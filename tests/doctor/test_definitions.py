@@ -121,3 +121,32 @@ def test_what_is_equal_by_this_arms_numbers_alone_decides_nothing(entry, text, s
     """Of point masses I2 = 0 and lc1 = l1: a cause is one for any arm."""
     found = kl.diagnose("planar2r", entry, text)
     assert found.causes and shown in found.causes[0].sentence, str(found)
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "text", "told"),
+    [
+        pytest.param("planar2r", "M11", "m1*l1^2 + m2*(l1^2 + l2^2 + 2*l1*l2+cos(q2))", "2*l1*l2*cos(q2)", id="a plus for a product"),
+        pytest.param("planar2r", "x", "l1*cos(q1) + l2*cos(q1)*cos(q2)", "cos(q1 + q2)", id="a cosine as if it were linear"),
+        pytest.param("planar3r", "V", r"m_1 g l_{c1} s_1 + m_2 g (l_1 s_1 + l_{c2} s_1 s_2) + m_3 g (l_1 s_1 + l_2 s_{12} + l_{c3} s_{123})", "s_1 s_2 should be s_{12}", id="s1*s2 for s12"),
+        pytest.param("planar3r", "J12", "-l2*sin(a) - l3*sin(b), where a = th1 + th2, b = th2 + th3", "b: th2 + th3 should be", id="an angle where it is set"),
+        pytest.param("planar3r", "statics[1]", "X = l2*s12 + l3*s123; Y = l2*c12 + l3*c123; tau2 = X*fx + Y*fy + nz", "X*fx should be -X*fx", id="a sign where it stands"),
+        pytest.param("isotropic", "theta1", CRANK.replace("A1 + C1", "A1 - C1"), "- C1 should be + C1", id="a sign within a root"),
+        pytest.param("scara", "C11", "p = m4*cx4; r = m2*(a2 + cx2) + (m3 + m4)*a2; C11 = -a1*(r*sin(q2) - m2*cy2*cos(q2))*qd2 - a1*p*sin(q4 - q2)*qd2 - a2*p*sin(q4)*qd4", "", id="a name within another: a1 in Ia1"),
+    ],
+)  # fmt: skip
+def test_one_slip_is_told_as_one_and_where_it_is(robot, entry, text, told) -> None:
+    found = kl.diagnose(robot, entry, text)
+    assert not found.agrees and found.causes, str(found)
+    assert told.replace(" ", "") in found.causes[0].sentence.replace(" ", ""), str(found)
+
+
+def test_a_slip_in_a_definition_comes_before_two_terms_more_in_the_formula() -> None:
+    """The rate of the second link where its energy is set; with a sine that stands in L itself."""
+    text = (
+        "K1 = (m1*lc1**2 + I1)*qd1**2/2; K2 = m2*(l1**2*qd1**2 + lc2**2*(qd1 + qd2)**2 "
+        "+ 2*l1*lc2*cos(q2)*qd1*(qd1 + qd2))/2 + I2*qd2**2/2; "
+        "L = K1 + K2 - m1*g*lc1*cos(q1) - m2*g*(l1*sin(q1) + lc2*sin(q1 + q2))"
+    )
+    cause = kl.diagnose("planar2r_rods", "L", text).causes[0]
+    assert "K2: qd2 should be (qd1 + qd2)" in cause.sentence and len(cause.kinds) == 2

@@ -14,7 +14,7 @@ import kinlab as kl
 from kinlab.check.quantities.registry import quantity
 from kinlab.doctor.file import examine_formulas, robot_of
 from kinlab.errors import ExpressionError
-from kinlab.formulas.text import formula_file
+from kinlab.formulas.files import formula_file
 
 XY, XYPHI = "inverse_kinematics_xy", "inverse_kinematics_xyphi"
 

@@ -14,7 +14,7 @@ from kinlab.check.quantities.fivebar import FIVEBAR
 from kinlab.check.quantities.fivebar import numbers as fivebar_numbers
 from kinlab.check.quantities.serial import numbers
 from kinlab.doctor.file import examine_formulas, robot_of
-from kinlab.formulas.text import formula_file
+from kinlab.formulas.files import formula_file
 from kinlab.notes.loop import S
 
 NAMED = [

@@ -12,8 +12,9 @@ import sympy
 import kinlab as kl
 from kinlab.errors import ExpressionError
 from kinlab.formulas import tree
+from kinlab.formulas.files import formula_file
 from kinlab.formulas.grids import cells, opened
-from kinlab.formulas.text import canonical, formula_file, parse
+from kinlab.formulas.text import canonical, parse
 from kinlab.formulas.typed import entry_name, explained, plain_formula, sides
 from kinlab.symbolic.vocabulary import vocabulary
 

@@ -24,8 +24,9 @@ from kinlab.check.quantities.registry import quantities, split_name
 from kinlab.errors import ExpressionError
 from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree
+from kinlab.formulas.files import FormulaFile
 from kinlab.formulas.signs.refusals import near_names
-from kinlab.formulas.text import FormulaFile, canonical, parse
+from kinlab.formulas.text import canonical, parse
 from kinlab.formulas.tree import Node
 from kinlab.host.language import _
 

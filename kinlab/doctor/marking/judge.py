@@ -36,8 +36,9 @@ from kinlab.doctor.text.own_names import in_robot_names
 from kinlab.errors import ExpressionError, KinlabError
 from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree
+from kinlab.formulas.files import FormulaFile, formula_file
 from kinlab.formulas.marks import differences
-from kinlab.formulas.text import FormulaFile, formula_file, parse
+from kinlab.formulas.text import parse
 from kinlab.formulas.tree import Node
 from kinlab.formulas.typeset import Marks, equation
 from kinlab.host.language import N_, _

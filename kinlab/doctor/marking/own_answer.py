@@ -24,7 +24,8 @@ from kinlab.doctor.verdicts import holds_with_other_numbers
 from kinlab.errors import ExpressionError, KinlabError, near
 from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree
-from kinlab.formulas.text import FormulaFile, canonical, formula_file
+from kinlab.formulas.files import FormulaFile, formula_file
+from kinlab.formulas.text import canonical
 from kinlab.formulas.tree import Node
 from kinlab.formulas.typeset import equation
 from kinlab.host.language import _

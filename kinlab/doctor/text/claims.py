@@ -20,8 +20,9 @@ from kinlab.doctor.text.joints import joint_claimed
 from kinlab.errors import ExpressionError
 from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree
+from kinlab.formulas.files import FormulaFile
 from kinlab.formulas.signs.refusals import near_names
-from kinlab.formulas.text import FormulaFile, canonical
+from kinlab.formulas.text import canonical
 from kinlab.host.language import _
 from kinlab.model.dh import DHTable
 from kinlab.symbolic.vocabulary import is_planar, vocabulary

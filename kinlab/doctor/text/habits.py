@@ -13,7 +13,8 @@ from kinlab.doctor.changes import Mechanism
 from kinlab.doctor.linkages import five_bar
 from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree
-from kinlab.formulas.text import FormulaFile, canonical, parse
+from kinlab.formulas.files import FormulaFile
+from kinlab.formulas.text import canonical, parse
 from kinlab.formulas.tree import Node
 from kinlab.model.dh import DHTable
 from kinlab.symbolic.vocabulary import Linear, vocabulary

@@ -18,9 +18,10 @@ from kinlab.doctor.text.meanings import Meanings, exact_angle, stands_for
 from kinlab.doctor.text.written import Written, literal
 from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree, typed
+from kinlab.formulas.files import FormulaFile
 from kinlab.formulas.retyped import Typing
 from kinlab.formulas.signs.refusals import near_names, refused
-from kinlab.formulas.text import MOST_NODES, FormulaFile, canonical, parse, tidied
+from kinlab.formulas.text import MOST_NODES, canonical, parse, tidied
 from kinlab.formulas.tree import Node
 from kinlab.host.language import N_, _
 from kinlab.tolerances import TOLERANCES
