@@ -220,8 +220,9 @@ def _is_simpler(slip: Slip, others: list[Slip], line: Line) -> bool:
     def beaten(one: Slip) -> bool:
         if len(slip.kinds) == len(one.kinds):
             both = slip.kinds == one.kinds == (_LOST,) and of_name
-            itself = one.replaced and {*words_in(one.replaced[0])} - _FUNCTIONS == {name}
-            return bool(both or itself) or slip.cost < one.cost
+            old = {*words_in(one.replaced[0])} - _FUNCTIONS if one.replaced else set()
+            itself = old == {name} and one.kinds != ("sign",)
+            return both or itself or slip.cost < one.cost
         return len(slip.kinds) < len(one.kinds)
 
     return all(map(beaten, others))
