@@ -30,6 +30,7 @@ from kinlab.doctor.text.own_names import (
     with_underscores,
     written_as,
 )
+from kinlab.doctor.text.shapes import in_full
 from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import numbers_at
 from kinlab.errors import ExpressionError, FileError, KinlabError, NameUnknownError
@@ -127,6 +128,7 @@ def _of_chain(parts: list[Diagnosis]) -> Diagnosis:
 
 def _examined(file: FormulaFile, robot: Mechanism, samples: int, seed: int) -> list[Diagnosis]:
     given = {*file.symbols}
+    file, shape = in_full(file, robot)
     file = _with_names(file, robot)
 
     def judged(other: FormulaFile) -> list[Diagnosis]:
@@ -135,7 +137,7 @@ def _examined(file: FormulaFile, robot: Mechanism, samples: int, seed: int) -> l
 
     found = judged(file)
     if all(one.agrees for one in found):
-        return found
+        return [replace(x, remarks=(shape, *x.remarks)) if shape else x for x in found]
     named, said = constants_named(file, robot)
     if said:
         pairs = zip(found, judged(named), strict=True)
@@ -144,7 +146,7 @@ def _examined(file: FormulaFile, robot: Mechanism, samples: int, seed: int) -> l
     if said:
         pairs = zip(found, judged(away), strict=True)
         found = [_by_distances(one, other, file, said) for one, other in pairs]
-    return found
+    return [_also_said(x, (shape,)) if shape and x.causes else x for x in found]
 
 
 def _with_names(file: FormulaFile, robot: Mechanism) -> FormulaFile:

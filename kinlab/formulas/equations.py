@@ -6,6 +6,7 @@ the other side stays as its writer typed it.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from fractions import Fraction
 
@@ -17,6 +18,8 @@ from kinlab.formulas.tree import Node
 from kinlab.formulas.typed import bare, is_latex, is_name, is_name_of, plain_formula
 from kinlab.host.language import N_
 
+_ENTRY = re.compile(r"\\?[A-Za-z]\w*\s*[\[(]\s*\d+\s*(?:,\s*\d+\s*)?[\])]")
+"""An entry by its place: tau[0], M(1,2)."""
 _NOTHING, _ONE = tree.num(0), tree.num(1)
 
 
@@ -36,7 +39,7 @@ def solved(text: str, entry: str, place: str) -> str:
         return text
     found = [_with_entry(side, entry, is_latex(text)) for side in sides]
     known = [k for k, one in enumerate(found) if one is not None]
-    if any(is_name(side.strip("& ")) for side in sides):
+    if any(is_name(side.strip("& ")) or _ENTRY.fullmatch(side.strip("& ")) for side in sides):
         return text
     if not known:
         if _is_quotient(sides[0]):

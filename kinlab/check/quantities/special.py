@@ -75,8 +75,12 @@ def planar_position_determinant(robot: Robot, q: Any) -> Any:
     return np.linalg.det(kinematics.jacobian(robot, q)[:, :2])
 
 
-def jacobian_determinant(robot: Robot, q: Any) -> Any:
-    """det of the first n rows of J, in base axes, that are not zero everywhere."""
+def square_rows(robot: Robot) -> list[int]:
+    """The first n rows of J, in base axes, that are not zero everywhere (0 to 5, linear first).
+
+    Raises:
+        StructureError: there are fewer.
+    """
     states = np.random.default_rng(0).uniform(-1.0, 1.0, (8, robot.n))
     sizes = np.abs(kinematics.jacobian(robot, states)).max(axis=(0, 2))
     rows = np.flatnonzero(sizes > TOLERANCES.no_effect * sizes.max())[: robot.n]
@@ -85,7 +89,12 @@ def jacobian_determinant(robot: Robot, q: Any) -> Any:
             f"jacobian_determinant is for arms whose Jacobian is square: the {robot.n} joints of "
             f"{robot.name!r} move {len(rows)} rows"
         )
-    return np.linalg.det(kinematics.jacobian(robot, q)[:, rows])
+    return [int(row) for row in rows]
+
+
+def jacobian_determinant(robot: Robot, q: Any) -> Any:
+    """det of the first n rows of J, in base axes, that are not zero everywhere."""
+    return np.linalg.det(kinematics.jacobian(robot, q)[:, square_rows(robot)])
 
 
 def planar_angle(robot: Robot, q: Any) -> Any:

@@ -11,11 +11,14 @@ from dataclasses import replace
 
 from kinlab.doctor.changes import Mechanism
 from kinlab.doctor.linkages import five_bar
+from kinlab.doctor.text.claims import claimed_of, with_wrench
 from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree
 from kinlab.formulas.files import FormulaFile
+from kinlab.formulas.signs.refusals import refused
 from kinlab.formulas.text import canonical, parse
 from kinlab.formulas.tree import Node
+from kinlab.host.language import N_
 from kinlab.model.dh import DHTable
 from kinlab.symbolic.vocabulary import Linear, vocabulary
 
@@ -26,6 +29,8 @@ _SLIDES = (("d{k}",), ("dd{k}", "d{k}dot", "ddot{k}"), ("ddd{k}", "d{k}ddot", "d
 _SUMMED = re.compile(r"phi_?(\d) *\+ *phi_?\d")
 _FIRST = {"w1": "qd1", "alpha1": "qdd1"}
 """Of the first link, which turns as its joint does; of others it may be the link or the joint."""
+_MAY_MOVE = re.compile(r"a\d")
+"""A length, or an acceleration."""
 NOTHING = "0"
 """What a name of a book's stands for where the robot has none of it."""
 
@@ -50,17 +55,23 @@ def with_habits(file: FormulaFile, robot: Mechanism) -> FormulaFile:
     motion = {f"q{'d' * k}{i + 1}" for k in range(3) for i in range(robot.n)}
     known = {name for name in used if tree.names(canonical(name)) <= motion}
     angles = {name for name in known if _positions(canonical(name))}
+    rates = any(str(canonical(name)).startswith("qdd") for name in known)
     slides = _of_slides(robot.table)
-    arrays = _of_arrays(file, known)
+    claims = {entry: with_wrench(file, claimed_of(entry, robot)) for entry in file.formulas}
+    torques = [entry for entry, name in claims.items() if name.startswith("inverse_dynamics")]
+    arrays = _of_arrays(file, known, bool(torques))
     summed = any(_SUMMED.search(text) for text in file.texts.values())
     new: dict[str, str] = {}
     for name in sorted(used - words - known - {*file.symbols}):
         plain = name.replace("_", "")
         free = motion if not angles else set()
-        found = slides.get(plain) or _by_letter(plain, words, used, free, summed)
+        found = arrays.get(plain) or slides.get(plain)
+        found = found or _by_letter(plain, words, used, free, summed)
+        if _MAY_MOVE.fullmatch(plain) and plain not in arrays and not rates:
+            _refuse_unclear(name, file, torques)
         if not found and plain in _FIRST and name not in turning:
             found = _FIRST[plain]
-        found = found or _of_several(plain, robot.n) or arrays.get(plain, "")
+        found = found or _of_several(plain, robot.n)
         if not found and robot.n == 1:  # m and l of the only link
             alone = f"{plain}1"
             if tree.names(canonical(alone)) <= motion | words:
@@ -99,13 +110,16 @@ def _of_several(plain: str, joints: int) -> str:
     return " + ".join(f"{head}{k}" for k in found[2])
 
 
-def _of_arrays(file: FormulaFile, known: set[str]) -> dict[str, str]:
-    """v[0] and a[0] beside q[0], the arguments of a function of the state, for its rates."""
+def _of_arrays(file: FormulaFile, known: set[str], moved: bool) -> dict[str, str]:
+    """v[0] and a[0] beside q[0], the arguments of a function of the state, for its rates.
+
+    Of what does not depend on accelerations a[0] is none.
+    """
     typed = " ".join(file.as_typed.values())
     rates = {str(node.value)[:-1] for node in map(canonical, known) if node.op == "sym"}
     return {
         f"{letter}{k}": f"{rate}{k}"
-        for letter, rate in (("v", "qd"), ("a", "qdd"))
+        for letter, rate in (("v", "qd"), ("a", "qdd"))[: 1 + moved]
         if rate not in rates and all(re.search(rf"(?<!\w){x}\[", typed) for x in ("q", letter))
         for k in range(1, 10)
     }
@@ -132,6 +146,22 @@ def _by_letter(plain: str, words: set[str], used: set[str], angles: set[str], su
         return length
     joint = found[1] == "t" or (found[1] == "phi" and summed)  # phi2 alone may be q1 + q2
     return angle if joint and angle in angles else ""
+
+
+def _refuse_unclear(name: str, file: FormulaFile, torques: list[str]) -> None:
+    """Refuses a1 in a torque without accelerations: it may be a length, or one of these.
+
+    Raises:
+        ExpressionError: the name, and what to write.
+    """
+    for entry in torques:
+        if name in tree.names(file.formulas[entry]):
+            raise refused(
+                f"{file.path}: {entry}",
+                N_("{name!r} may be a length or an acceleration; write l{joint} or qdd{joint}"),
+                name=name,
+                joint=name[-1],
+            )
 
 
 def _positions(node: Node) -> bool:

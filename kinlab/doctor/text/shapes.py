@@ -1,0 +1,102 @@
+"""Matrices of fewer rows than the engine's: a planar arm's 3 x 3 pose, a SCARA's 4 x 4 Jacobian."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+
+from kinlab.check.quantities.special import square_rows
+from kinlab.doctor.changes import Mechanism
+from kinlab.errors import StructureError
+from kinlab.fivebar import FiveBar
+from kinlab.formulas import tree
+from kinlab.formulas.files import FormulaFile
+from kinlab.host.language import _
+from kinlab.model.robot import Robot
+from kinlab.symbolic.vocabulary import is_planar
+
+_POSES, _JACOBIANS = ("T", "A", "H", "fk"), ("J", "jacobian")
+_PLACE = re.compile(r"([A-Za-z]+)(?:([1-9])([1-9])|\[(\d),(\d)\])")
+_HOMOGENEOUS = (0, 1, 3)
+"""Which rows and columns of a pose those of a planar one are."""
+_RATES = ("vx", "vy", "vz", "wx", "wy", "wz")
+
+
+def in_full(file: FormulaFile, robot: Mechanism) -> tuple[FormulaFile, str]:
+    """The formulas of such a matrix by their places in the engine's, and what is said of it.
+
+    Args:
+        file: the formulas.
+        robot: whose they are.
+
+    Returns:
+        The same file, and ``""``, where no matrix is such.
+    """
+    if isinstance(robot, FiveBar) or robot.table is None:
+        return file, ""
+    for head in (*_POSES, *_JACOBIANS):
+        places = {place: entry for entry in file.formulas if (place := _place(entry, head))}
+        size = max((k + 1 for place in places for k in place), default=0)
+        if size < 3 or len(places) != size * size:
+            continue
+        if head in _JACOBIANS:
+            rows = _square(robot, size)
+            if rows != [*range(size)]:
+                told = _("its rows are read as {rows}").format(
+                    rows=", ".join(_RATES[k] for k in rows)
+                )
+                return _renamed(file, places, head, rows, range(size)), told
+        elif is_planar(robot.table) and _is_pose(file, places, size):
+            told = _("it is read as the pose in the plane")
+            return _renamed(file, places, head, _HOMOGENEOUS, _HOMOGENEOUS), told
+    return file, ""
+
+
+def _place(entry: str, head: str) -> tuple[int, int] | None:
+    """Row and column of an entry of a matrix, from 0."""
+    found = _PLACE.fullmatch(entry)
+    if found is None or found[1] != head:
+        return None
+    if found[2]:
+        return int(found[2]) - 1, int(found[3]) - 1
+    return int(found[4]), int(found[5])
+
+
+def _square(robot: Robot, size: int) -> list[int]:
+    """The rows of J that a square matrix of an arm that is not planar has."""
+    if size != robot.n or robot.table is None or is_planar(robot.table):
+        return [*range(size)]
+    try:
+        return square_rows(robot)
+    except StructureError:
+        return [*range(size)]
+
+
+def _is_pose(file: FormulaFile, places: dict[tuple[int, int], str], size: int) -> bool:
+    """Whether a 3 x 3 matrix has a place in its last column, and 0 0 1 in its last row."""
+    if size != len(_HOMOGENEOUS):
+        return False
+    last = [file.formulas[places[2, j]] for j in range(size)]
+    moves = any(tree.names(file.formulas[places[i, 2]]) for i in range(2))
+    return moves and last == [tree.num(0), tree.num(0), tree.num(1)]
+
+
+def _renamed(
+    file: FormulaFile,
+    places: dict[tuple[int, int], str],
+    head: str,
+    rows: Sequence[int],
+    columns: Sequence[int],
+) -> FormulaFile:
+    """The file with each entry named by its row and column in the engine's matrix."""
+    names = {}
+    for (i, j), entry in places.items():
+        row, column = rows[i], columns[j]
+        names[entry] = f"{head}[{row},{column}]" if "[" in entry else f"{head}{row + 1}{column + 1}"
+    return replace(
+        file,
+        formulas={names.get(entry, entry): node for entry, node in file.formulas.items()},
+        texts={names.get(entry, entry): text for entry, text in file.texts.items()},
+        as_typed={names.get(entry, entry): text for entry, text in file.as_typed.items()},
+    )
