@@ -33,6 +33,8 @@ _PATIENCE = 2
 """Entries without an explanation after which the rest are not tried."""
 _PAIR = 2
 """Slips of a formula itself beside which none is looked for in definitions."""
+_NO_DOUBT = 0.45
+"""What two slips must cost less of which one is in a definition, for two of the formula itself."""
 _FLOOD = 8
 """Slips in all entries together above which a list of them is no diagnosis."""
 _TIED = 5
@@ -58,9 +60,14 @@ def slips_in(
         some = [*_definitions(case, every, off, written)]
     some = [] if defined else some
     asked = {entry.label: entry for entry, _one in some}
-    few = {x for x, one in asked.items() if not of_entry(case, one, written[x], _PAIR)}
+    own = {x: of_entry(case, one, written[x], _PAIR) for x, one in asked.items()}
+    few = {x for x, found in own.items() if not found}
     open_ = [(entry, one) for entry, one in some if entry.label in few]
     several = _with_more(case, every, open_, written, Definitions.with_one_more)
+    if len(off) == len(own) == 1 and not few:  # is one of the two likelier in a definition?
+        either = _with_more(case, every, some, written, Definitions.with_one_more)
+        one = min(own[off[0].label], key=lambda slip: slip.cost)
+        several = either if sum(found[0].cost for found in either) < one.cost - _NO_DOUBT else []
     per_entry = several or [*([one] for one in defined), *_per_entry(case, off, written, few)]
     if not all(per_entry) and isinstance(reference_of(case), Derivation):
         per_entry = _with_more(case, every, open_, written, Definitions.with_two_more) or per_entry

@@ -15,7 +15,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.entries.terms import Slip, slip_of
-from kinlab.doctor.text.alternatives import study, study_angle
+from kinlab.doctor.text.alternatives import study, study_definition
 from kinlab.doctor.text.line import Change, Line, words_in
 from kinlab.doctor.text.mend import Mended, rewritten, right_with_two
 from kinlab.doctor.text.written import Written
@@ -61,7 +61,7 @@ def _part(line: Line, name: str) -> _Part:
         own = Line(text, line.names, line.at, text.values(line.at), line.forms)
     study(own)
     if name:
-        study_angle(own)
+        study_definition(own)
     kept: list[tuple[Change, str, Array]] = []
     for one, row in zip(own.changes, own.rows, strict=True):
         new = rewritten(own.source, (one,)) if not one.everywhere else None

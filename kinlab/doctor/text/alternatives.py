@@ -10,6 +10,7 @@ import ast
 import math
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -62,13 +63,22 @@ def study(line: Line) -> None:
     throughout(line)
 
 
-def study_angle(line: Line) -> None:
-    """Notes the other angles that a sum of joint positions may be meant for."""
+def study_definition(line: Line) -> None:
+    """Notes what else a name may be set to: another angle, or another name of the writer's more."""
     node = tree.renamed(parse(line.source), {w: line.meaning(w) for w in words_in(line.source)})
     if tree.names(node) <= {f"q{i + 1}" for i in range(line.names.n)}:
         for angle in dict.fromkeys((*line.names.angles, *_beside(line, node))):
             if angle != node:
                 _node(line, line.root, angle, "argument", 1.2)
+        return
+    end, told = len(line.source), N_("the term {term} is missing")
+    there = {*words_in(line.source)}
+    for name in (name for name in line.text.symbols if name not in there):
+        value = replace(line.text, text=name).values(line.at)
+        if np.ptp(value) > 0 and line.meaning(name) not in line.names.angles:
+            span = (end, end, f"{line.gap}+{line.gap}{name}")
+            new = line.root.value + value
+            line.edit(line.root, new, span, "missing term", 1.15, told, {"term": name})
 
 
 def study_what_stands(line: Line) -> None:
