@@ -62,20 +62,20 @@ def _part(line: Line, name: str) -> _Part:
     study(own)
     if name:
         study_definition(own)
-    kept: list[tuple[Change, str, Array]] = []
+    kept: list[tuple[bool, Change, str, Array]] = []
     for one, row in zip(own.changes, own.rows, strict=True):
         new = rewritten(own.source, (one,)) if not one.everywhere else None
         if new is None or not made.isdisjoint(words_in(new)):
             continue
-        foreign = (
-            bool(name) and one.kind in _ADDED and not {*words_in(new)} <= {*words_in(own.source)}
-        )
-        kept.append((replace(one, cost=one.cost + _FOREIGN * foreign), new, row))
-    # there are thousands of terms and factors that may be added somewhere
-    kept.sort(key=lambda x: (x[0].kind in _ADDED and x[0].start == x[0].end, x[0].cost))
-    rows = np.array([row for _one, _new, row in kept]).reshape(len(kept), own.count)
-    texts = [new for _one, new, _row in kept]
-    return _Part(name, [one for one, _new, _row in kept], texts, own.root.value + rows)
+        added = one.kind in _ADDED and one.new.strip("+ ") not in own.text.symbols
+        foreign = bool(name) and added and not {*words_in(new)} <= {*words_in(own.source)}
+        likely = replace(one, cost=one.cost + _FOREIGN * foreign)
+        # there are thousands of terms and factors that may be added somewhere
+        kept.append((added and one.start == one.end, likely, new, row))
+    kept.sort(key=lambda x: (x[0], x[1].cost))
+    rows = np.array([row for *_, row in kept]).reshape(len(kept), own.count)
+    texts = [new for *_, new, _row in kept]
+    return _Part(name, [one for _last, one, _new, _row in kept], texts, own.root.value + rows)
 
 
 def _put(text: Written, part: str, new: str) -> Written:

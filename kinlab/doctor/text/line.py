@@ -204,7 +204,8 @@ class Line:
     def _by_chance(self, name: str) -> bool:
         """Whether a name is a centre's that nobody typed: of a point mass a length is as long."""
         typed = name in words_in(self.source) or name in self.text.definitions
-        length = self.text.symbols[name] in self.names.parameters
+        meaning = self.text.symbols[name]
+        length = meaning in self.names.parameters and not _CENTRE.fullmatch(meaning)
         return length and not typed and bool(_CENTRE.fullmatch(name))
 
     @cached_property
