@@ -31,6 +31,7 @@ from kinlab.errors import ExpressionError, FileError
 from kinlab.formulas import grids, tree, typed
 from kinlab.formulas.arithmetic import Meaning, is_arithmetic, read
 from kinlab.formulas.handed.reading import as_formula
+from kinlab.formulas.signs.latex import LAMBDA
 from kinlab.formulas.signs.letters import WIDE
 from kinlab.formulas.signs.refusals import near_names, refused
 from kinlab.formulas.tree import Node
@@ -117,6 +118,8 @@ def formula_file(
     if not isinstance(robot, str) or not robot:
         raise FileError(f"{place}: " + _('robot is missing; write robot = "planar2r" or a path'))
     symbols = _table(document.pop("symbols", {}), f"{place}: [symbols]")
+    if "lambda" in symbols:
+        symbols.setdefault(LAMBDA, symbols.pop("lambda"))
     entries = _table(document.pop("formulas", {}), f"{place}: [formulas]")
     typeset = _table(document.pop("latex", {}), f"{place}: [latex]")
     for key, value in document.items():

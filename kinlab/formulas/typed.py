@@ -117,8 +117,12 @@ def plain_formula(text: str, place: str = "expression", writing: Hand | None = N
     else:
         text = _waves_apart(_plain_signs(text, place), place, writing)
         text = with_products(_without_indices(text, place, writing), _FUNCTIONS, place)
+        text = _LAMBDA.sub(latex.LAMBDA, text)
     return _with_squares(_capitals(text, place, writing), place, writing)
 
+
+_LAMBDA = re.compile(r"(?<![\w.])lambda(?!\w)")
+"""A name that Python has a use for."""
 
 _OF_ONE_LETTER = r"sin|cos|tan|sqrt|lc[₀-₉]+|[^\W\d_][\u0307\u0308]?(?:_?\d+|[₀-₉]+)?"
 _OF_LETTERS = (
@@ -572,9 +576,9 @@ def _uses(names: Iterable[str], lines: Iterable[str]) -> bool:
 _STARTS_FORMULA = re.compile(r"^[-(\d.]")
 _BY_DEFINITION = re.compile(
     r"\\partial|∂|\\nabla|\\(?:sum|int)(?![A-Za-z])|\\d?t?frac\s*\{\s*(?:\\mathrm\s*\{)?d|\bd\w*\s*/\s*d\w"
-    r"|\^\s*\{?(?:T\b|\\top|\\mathrm\s*\{?T)|^-?\s*[xyzVUPTKL](?:_\{?\w+\}?)?$"
+    r"|\^\s*\{?(?:T\b|\\top|\\mathrm\s*\{?T)|^-?\s*[xyzVUPTKL](?:_\{?\w+\}?)?$|^[TK]\s*-\s*[VUP]$"
 )
-"""A part of a chain of equalities that says what the entry is: a derivative, -y, J^T f."""
+"""A part of a chain of equalities that says what the entry is: a derivative, -y, J^T f, T - V."""
 
 
 _LONGEST_CHAIN = 8
@@ -722,6 +726,8 @@ def entry_name(text: str, place: str = "expression", writing: Hand | None = None
     if len(text) > _LONGEST_NAME:
         raise refused(place, N_("{text}... is no name of an entry"), text=text[:30])
     typed = _IN_BASE.sub("", _OF_STATE.sub("", bare(text).strip("& ")).strip())
+    if _LAMBDA.fullmatch(typed):
+        return latex.LAMBDA
     if _DETERMINANT.fullmatch(typed):
         return "det J"
     if "∂" in typed:

@@ -6,6 +6,7 @@ What is around the formula is left out, and what only programs have is written a
 from __future__ import annotations
 
 import re
+from itertools import islice
 
 from kinlab.formulas.signs.brackets import closes, outside, parts_at
 
@@ -22,8 +23,8 @@ _LAMBDA = re.compile(rf"^(\s*\w+\s*=\s*)?lambda\s+{_STATE}(?:\s*,\s*{_STATE})*\s
 _DEFINED = re.compile(
     rf"^\s*def\s+(\w+)\s*\(\s*(?:self\s*,\s*)?{_STATE}(?:\s*,\s*{_STATE})*\s*\)[^:\n]*:\s*"
 )
-_RETURN = re.compile(r"^\s*return\s+(?=\S)", re.MULTILINE)
-_IMPORT = re.compile(r"^\s*(?:import|from)\s+\w[^\n]*\n", re.MULTILINE)
+_RETURN = re.compile(r"^[ \t]*return\s+(?=\S)", re.MULTILINE)
+_IMPORT = re.compile(r"^[ \t]*(?:import|from)[ \t]+\w[^\n]*\n", re.MULTILINE)
 _OWNER = re.compile(
     r"(?<![\w.])(self|this|p|par|param|params|robot|arm|obj|model|cfg|config|prm)\.(?=[A-Za-z_])"
 )
@@ -35,12 +36,16 @@ _NAMES = re.compile(r"\s*([A-Za-z]\w*(?:\s*,\s*[A-Za-z]\w*)+)\s*=(?!=)\s*(\S.*)"
 _BRACES = re.compile(r"^(\s*[A-Za-z]\w*(?:\([\w, ]*\))?\s*:?=)?\s*(?=\{)")
 _COMMA = re.compile(r"(?<![\w.,{\[])(\d+),(\d+)(?![\d,.])")
 _OTHER_COMMA = re.compile(r"(?<!\d),|,(?!\d)")
+_CALL = re.compile(r"(?:(?<![A-Za-z])(?!(?:sin|cos|tan|sqrt)\()[A-Za-z_]\w*|[\])])\s?\(\s*-?$")
 _POINT = re.compile(r"\d\.\d")
 _SUMS = re.compile(r"(?<![\w.])(?:np\.|numpy\.)?(?:linalg\.)?(dot|sum|norm)\s*\((?=\s*\[)")
 _NUMBERED = re.compile(
     r"^\s*(?:\(\s*\d+(?:[.-]\d+)?[a-z]?\s*\)|\d+[.)])\s*(?=[\\A-Za-zα-ω][^=\n]{0,30}=)"
 )
+_SQUARE = re.compile(r"(?:^|[-+*/^=(\[ ]|(?<![\w.])\d)\[(?=[^\[\]]{3})")
 _MOST = 40
+_NEAR = 30
+"""Letters in front of a number that say whether it is an index."""
 
 
 def without_code(text: str, alone: bool) -> str:
@@ -59,16 +64,23 @@ def without_code(text: str, alone: bool) -> str:
     text = _of_function(text)
     if "\\" in text or "$" in text:
         return text
-    owners = {*_OWNER.findall(text)}
-    if len(owners) == 1 and not re.search(rf"(?<![\w.]){[*owners][0]}(?![\w.])", text):
+    owner, *others = sorted({*_OWNER.findall(text)}) or [""]
+    if owner and not others and not re.search(rf"(?<![\w.]){owner}(?![\w.])", text):
         text = _OWNER.sub("", text)
     text = _STANDARD.sub("math.", _SINGLE.sub(r"\1", text))
     text = _TWO_SIGNS.sub("=", _GLUED.sub(r"\1 \2", text))
     text = "\n".join(map(_one_each, text.split("\n")))
     text = _without_lists(_in_brackets(text))
+    text = _in_parentheses(text) if alone else text
     if alone and not _POINT.search(text) and not _OTHER_COMMA.search(text):
-        text = _COMMA.sub(r"\1.\2", text)
+        text = _COMMA.sub(lambda found: _with_point(found, text), text)
     return text
+
+
+def _with_point(found: re.Match[str], text: str) -> str:
+    """``0,5`` as ``0.5``, but for two indices or arguments: ``C(1,2)``, ``atan2(1,2)``."""
+    listed = _CALL.search(text[max(0, found.start() - _NEAR) : found.start()])
+    return found[0] if listed else f"{found[1]}.{found[2]}"
 
 
 def _of_function(text: str) -> str:
@@ -105,6 +117,16 @@ def _in_brackets(text: str) -> str:
         return text
     inside = body[start + 1 : -1]
     return f"{body[:start]}[{inside}]" if len(parts_at(inside, ",")) > 1 else text
+
+
+def _in_parentheses(text: str) -> str:
+    """``[a + b]θ̈₁`` as ``(a + b)θ̈₁``: a sum in brackets, which is no list."""
+    for found in islice(_SQUARE.finditer(text), _MOST):
+        start, end = found.end() - 1, closes(text, found.end() - 1)
+        inside = text[start + 1 : end]
+        if end > 0 and _is_sum(inside) and len(parts_at(inside, ",;\n")) == 1:
+            text = f"{text[:start]}({inside}){text[end + 1 :]}"
+    return text
 
 
 def _without_lists(text: str) -> str:

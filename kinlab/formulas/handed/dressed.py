@@ -63,10 +63,12 @@ def undressed(text: str, entry: str) -> str:
     if entry.startswith("tau"):
         text = _TORQUE.sub(lambda m: f"{m[1]}tau{m[2] or ''} ".replace("tau{", "tau_{"), text)
     if "det" in entry:
-        text = _OF_J.sub("det ", text)
+        chained = text.count("=") > 1 or "{" in text.partition("=")[0]
+        text = _OF_J.sub("det ", text) if chained else text
         text = _DETERMINANT.sub(lambda m: _determinant(m[1] or m[2]) or m[0], text)
     text = _FIRST.sub(lambda m: "$" * m[0].count("$"), text)
     text = _with_waves(text)
+    text = _STOP.sub(lambda m: m[1] if m[1] in (",", ";") else "", text)
     if "\\" not in text:
         return text
     text = _COLOUR.sub(" ", text)
@@ -77,8 +79,7 @@ def undressed(text: str, entry: str) -> str:
     text = _CASES.sub(r"\\begin{cases}\2\\end{cases}", text)
     text = _LINES.sub(r"\\\1{align\2}", _AMPERSANDS.sub("&=", text))
     text = _BIG.sub(r"\\\1{bmatrix}", text)
-    text = _with_fractions(_FRACTION.sub(r"\\frac", text))
-    return _STOP.sub(lambda m: m[1] if m[1] in (",", ";") else "", text)
+    return _with_fractions(_FRACTION.sub(r"\\frac", text))
 
 
 def _without(command: re.Pattern[str], text: str) -> str:

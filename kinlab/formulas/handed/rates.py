@@ -1,4 +1,4 @@
-"""Rates by the names that programs of algebra give them: ``diff(q1(t), t, 2)``, ``q1''[t]``, ``q1pp``.
+"""Rates as programs of algebra name them: ``diff(q1(t), t, 2)``, ``q1''[t]``, ``q1pp``.
 
 They become ``qd1`` and ``qdd1``; a name that the writer explains stays.
 """
@@ -40,6 +40,9 @@ _POINTS = re.compile(r"(?<![\w.\\])(q|th|theta)_?(?:(\d)_?(p{1,2})|(p{1,2})_?(\d
 _ORDERS = re.compile(r"(?<![\w.\\])D([12]?)(q|th|theta)_?(\d)(?!\w)")
 _EXPLAINED = re.compile(r"(?<![\w.\\])(\w+)\s*:?=(?!=)")
 _TIME = re.compile(r"(?<![A-Za-z])(?:t|dt)(?![A-Za-z])")
+_ANGLES = re.compile(r"(?<![A-Za-z])(?:sin|cos)\(\s*t_?\d")
+_OF_ANGLES = re.compile(r"(?<![\w.\\])(d{1,2})t_?(\d)(?!\w)")
+_TIMES = re.compile(r"(?<![\w.])(?:dt|t)(?!\w)")
 _DIGITS = str.maketrans("₁₂₃₄₅₆₇₈₉", "123456789")
 _DOTS = ("", r"\dot", r"\ddot")
 
@@ -54,7 +57,13 @@ def plain_rates(text: str) -> str:
     if not typeset:
         text = _POINTS.sub(lambda found: _of_points(found, own), text)
         text = _ORDERS.sub(lambda found: _of_orders(found, own), text)
+        if _ANGLES.search(text) and not _TIMES.search(text):
+            text = _OF_ANGLES.sub(lambda found: _of_letters(found, own), text)
     return text
+
+
+def _of_letters(found: re.Match[str], own: set[str]) -> str:
+    return found[0] if found[0] in own else f"q{found[1]}{found[2]}"
 
 
 def _named(head: str, joint: str, order: int, typeset: bool) -> str:

@@ -17,6 +17,7 @@ _ALONE = re.compile(
     r"(?:p_?)?[xyz]|[VUPTKL]|phi|det\w*|E_?[pk]|\w*energy|lagrangian|[\w,\[\]]*[\d\]]"
 )
 """Entries that are one number."""
+_GAP = re.compile(r"\s{12,}")
 
 
 def as_formula(text: str, entry: str, place: str) -> tuple[str, str]:
@@ -34,7 +35,7 @@ def as_formula(text: str, entry: str, place: str) -> tuple[str, str]:
     Raises:
         ExpressionError: what can be read in two ways.
     """
-    text = plain_letters(text, place)
+    text = _GAP.sub(lambda gap: "\n" if "\n" in gap[0] else " ", plain_letters(text, place))
     text = without_code(text, bool(_ALONE.fullmatch(entry)))
     text = undressed(text, entry)
     text = without_words(text, entry, place)

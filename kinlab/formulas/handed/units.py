@@ -69,6 +69,9 @@ _OTHER_AT_END = re.compile(
     + _DRESSED.replace("{unit}", _OTHER_UNITS)
     + _END
 )
+_PIECE = rf"{_FONT}\{{\s*(?:kg|rad|N|J|m|s)\s*\}}{_POWER}"
+_PIECES = re.compile(rf"{_PIECE}(?:{_BETWEEN}{_PIECE}){{1,5}}")
+_FONTS = re.compile(rf"{_FONT}\{{\s*(\w+)\s*\}}")
 _NUMBER = r"(?<![\w.])-?\d+(?:\.\d+)?(?:[eE]-?\d+)?"
 _GIVEN = re.compile(
     rf"(?P<name>(?<![\w.])\\?[A-Za-z]\w*(?:\{{\w{{1,4}}\}})?)\s*&?\s*:?=\s*(?P<number>{_NUMBER})"
@@ -80,6 +83,7 @@ _CONVERTED = re.compile(
     rf"(?P<frac>frac\s*)?(?P<number>{_NUMBER}){_SPACE}"
     rf"(?:(?P<a>mm|cm|dm|km|deg)(?![\w(])|{_FONT}\{{\s*(?P<b>mm|cm|dm|km|deg)\s*\}})"
 )
+_OWN_UNITS = re.compile(r"(?<![\w.\\])(mm|cm|dm|km|deg)\s*=")
 _METRES = re.compile(rf"(?P<number>{_NUMBER})[ ]m(?!\w)")
 _SYMBOL_OF = re.compile(r",\s*\[\s*\w+\s*\]\s*=\s*[\w ^*·/]{1,12}$")
 _WORD_M = re.compile(r"(?<![\w.\\])m(?!\w)")
@@ -96,9 +100,11 @@ def without_units(text: str, entry: str, place: str) -> str:
     Raises:
         ExpressionError: a formula in centimetres or degrees.
     """
+    text = _PIECES.sub(lambda found: f"\\mathrm{{{_FONTS.sub(_inside, found[0])}}}", text)
     wanted = next((sizes for pattern, sizes in _ENTRIES if pattern.fullmatch(entry)), set())
     text = _GIVEN.sub(_as_number, _SYMBOL_OF.sub("", text))
-    text = _CONVERTED.sub(lambda found: _converted(found, text), text)
+    own = {*_OWN_UNITS.findall(text)}
+    text = _CONVERTED.sub(lambda found: _converted(found, "\\" in text, own), text)
     if wanted == {(1, 0, 0)} and "\\" not in text:
         every = len(_WORD_M.findall(text))
         if (
@@ -113,6 +119,10 @@ def without_units(text: str, entry: str, place: str) -> str:
             said = N_("the formula is in {unit}; write it in SI units: m, kg, s, rad, N, J")
             raise refused(place, said, unit=unit)
     return _AT_END.sub(lambda found: _behind(found, text, wanted), text)
+
+
+def _inside(found: re.Match[str]) -> str:
+    return found[1]
 
 
 def _size(unit: str) -> tuple[int, int, int] | None:
@@ -171,11 +181,12 @@ def _as_number(found: re.Match[str]) -> str:
     return f"{found['name']} = {number}" if size == wanted else found[0]
 
 
-def _converted(found: re.Match[str], text: str) -> str:
+def _converted(found: re.Match[str], typeset: bool, own: set[str]) -> str:
+    """``50 cm`` as ``0.5``; letters that LaTeX or the writer has for names stay."""
     unit = found["a"] or found["b"]
-    if found["frac"] or (found["a"] and ("\\" in text or re.search(rf"\b{unit}\s*=", text))):
+    if found["frac"] or (found["a"] and (typeset or unit in own)):
         return found[0]
     if unit == "deg":
-        pi = r"\pi" if "\\" in text else "pi"
+        pi = r"\pi" if typeset else "pi"
         return f"({found['number']}*{pi}/180)"
     return f"{Decimal(found['number']) * _OTHERS[unit][1]:f}"

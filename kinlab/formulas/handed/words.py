@@ -1,4 +1,4 @@
-"""Words around a formula: ``末端的 x 坐标为 $x = ...$``, ``关节2力矩：tau2 = ...``, ``where q1 is the angle``.
+"""Words around a formula: ``末端的 x 坐标为 $x = ...$``, ``where q1 is the angle of joint 1``.
 
 Words in front are left out. Of what is said behind, equations are kept, and words that only say
 what a name is anyway are left out; what may change a name's meaning is refused.
@@ -33,21 +33,22 @@ _INLINE = re.compile(rf"[{_CHINESE}]|\b(?!where\b|with\b|and\b)[A-Za-z]{{3,}}")
 _WORD_FONT = re.compile(r"\\(?:text|textrm|mbox|mathrm|textnormal)\s*\{([^{}]*)\}")
 _WHERE = re.compile(
     r"(?:[,;.]\s*|\s+|\\q?quad\s*|(?<=[)\]}\w]))(?:\\text\s*\{[\s,]*)?"
-    r"(?:\bwhere\b|\bin which\b|\bwobei\b|\bdabei\s+(?:ist|sind|gilt)\b|\bhierbei\s+(?:ist|sind)\b|\bhere\b"
-    r"|(?<![\\A-Za-z])(?:mit|with)\b(?=\s|\})|其中|式中|这里)[\s:,]*(?:\})?"
+    r"(?:\bwhere\b|\bin which\b|\bwobei\b|\bdabei\s+(?:ist|sind|gilt)\b|\bhierbei\s+(?:ist|sind)\b"
+    r"|\bhere\b|(?<![\\A-Za-z])(?:mit|with)\b(?=\s|\})|其中|式中|这里)[\s:,]*(?:\})?"
 )
 _AND_SO_ON = re.compile(r"[\s,]*(?:\betc\b\.?|\busw\b\.?|等等?[.]?)\s*$")
 _NEXT_NAME = re.compile(r"([\\A-Za-zα-ω][\\\w{}₀-₉ ]{0,14}?)\s*(:?=.*)$", re.DOTALL)
 _MEANS = re.compile(
     r"^(.{1,20}?)\s+(?:denotes|means|stands for|is short for|steht für|表示)\s+(.*)$"
 )
-_HARMLESS = {
-    *"the a an of is are be and respectively joint joints first second third angle angles".split(),
-    *"link links length lengths mass masses gravity acceleration gravitational variables variable".split(),
-    *"der die das des den dem ist sind und ersten zweiten dritten gelenks gelenk gelenke".split(),
-    *"winkel gelenkwinkel länge längen masse massen glied glieds glieder gliedes".split(),
-    *"erdbeschleunigung jeweils bzw in m kg rad arm arms robot constant".split(),
-}  # fmt: skip
+_WORDS = """
+    the a an of is are be and respectively joint joints first second third angle angles link links
+    length lengths mass masses gravity acceleration gravitational variables variable der die das des
+    den dem ist sind und ersten zweiten dritten gelenks gelenk gelenke winkel gelenkwinkel länge
+    längen masse massen glied glieds glieder gliedes erdbeschleunigung jeweils bzw in m kg rad arm
+    arms robot constant
+"""
+_HARMLESS = {*_WORDS.split()}
 _HARMLESS_CHINESE = re.compile(
     "(?:为|是|即|分别|表示|各|第|一|二|三|两|个|连杆|杆件|杆|长度|长|质量|关节角度|关节角|关节变量|关节|"
     "角度|转角|角|重力加速度|重力|加速度|的|和|与|及|机械臂|机器人)+"
@@ -102,8 +103,10 @@ def _cut(text: str) -> tuple[str, str, str]:
 
 
 def _without_front(line: str, entry: str) -> str:
-    plain = line.lstrip("$ ")
+    given = line
+    plain = line.lstrip("$ \t")
     dollars = line[: len(line) - len(plain)].strip()
+    line = plain
     found = _FRONT.match(plain)
     if found:
         if found["name"].strip():
@@ -112,7 +115,7 @@ def _without_front(line: str, entry: str) -> str:
         behind = plain[found.end() :]
         if _is_name(name, entry):
             return f"{dollars}{name} ={behind}"
-        return line if name else f"{dollars}{behind}"
+        return given if name else f"{dollars}{behind}"
     if "=" not in plain:
         plain = _COLON.sub("", plain)
     found = _LATIN.match(plain)
@@ -127,7 +130,7 @@ def _without_front(line: str, entry: str) -> str:
             plain = f"{head} = {rest}"
         elif _LONG.search(head) or _is_name(head, entry):
             plain = rest
-    return f"{dollars}{plain}"
+    return given if plain == line else f"{dollars}{plain}"
 
 
 def _is_name(text: str, entry: str) -> bool:
