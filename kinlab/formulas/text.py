@@ -168,8 +168,8 @@ def formula_file(
     entries = {key: parts[0] for key, parts in chains.items()}
     read = partial(_read, place, robot, symbols, writing)
     others = (read({**entries, key: part}) for key, parts in chains.items() for part in parts[1:])
-    said = {key: remark for key, remark in remarks.items() if remark}
-    return replace(read(entries), others=tuple(others), remarks=said)
+    remarks = {key: remark for key, remark in remarks.items() if remark}
+    return replace(read(entries), others=tuple(others), remarks=remarks)
 
 
 _SIGNS = re.compile(r"[_{}\\\s]")

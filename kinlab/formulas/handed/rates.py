@@ -6,6 +6,7 @@ They become ``qd1`` and ``qdd1``; a name that the writer explains stays.
 from __future__ import annotations
 
 import re
+from functools import partial
 
 _JOINT = r"(?P<head>q|th|theta|\\theta|θ)_?\{?(?P<k>\d{1,2}|[₁-₉])\}?"
 _OF_TIME = r"\s*(?:\(\s*t\s*\)|\[\s*t\s*\])?"
@@ -52,7 +53,7 @@ def plain_rates(text: str) -> str:
     typeset = "\\" in text
     if _TIME.search(text):
         for pattern, order in _WAYS:
-            text = pattern.sub(lambda m, n=order: _named(m["head"], m["k"], n, typeset), text)
+            text = pattern.sub(partial(_named, order=order, typeset=typeset), text)
     own = {*_EXPLAINED.findall(text)}
     if not typeset:
         text = _POINTS.sub(lambda found: _of_points(found, own), text)
@@ -66,8 +67,8 @@ def _of_letters(found: re.Match[str], own: set[str]) -> str:
     return found[0] if found[0] in own else f"q{found[1]}{found[2]}"
 
 
-def _named(head: str, joint: str, order: int, typeset: bool) -> str:
-    joint = joint.translate(_DIGITS)
+def _named(found: re.Match[str], order: int, typeset: bool) -> str:
+    head, joint = found["head"], found["k"].translate(_DIGITS)
     if typeset:
         head = head if head in ("q", r"\theta") else r"\theta"
         below = f"_{joint}" if len(joint) == 1 else f"_{{{joint}}}"

@@ -122,7 +122,7 @@ def without_units(text: str, entry: str, place: str) -> str:
 
 
 def _inside(found: re.Match[str]) -> str:
-    return found[1]
+    return f" {found[1]}"
 
 
 def _size(unit: str) -> tuple[int, int, int] | None:
