@@ -9,7 +9,7 @@ from kinlab.host.language import _
 _POTENTIALS = re.compile(r"[VUPL]|E_?p|potential(?:_energy)?|lagrangian")
 _CONSTANT = (
     r"(?:\\(?:text|mathrm|textrm|operatorname)\s*\{\s*(?:const|Const|constant|konst)\.?\s*\}"
-    r"|(?:const|Const|constant|konst)(?![A-Za-z])\.?|[CcKk](?:_?\{?0\}?)?(?![\w(])"
+    r"|(?:const|Const|constant|konst)(?![A-Za-z])\.?|C(?:_?\{?0\}?)?(?![\w(])"
     r"|(?:[VUP]|E_?\{?p?\}?)_?\{?(?:0|ref|₀)\}?(?![\w(])|常数|常量)"
 )
 _AT_END = re.compile(
@@ -33,7 +33,7 @@ def without_constant(text: str, entry: str) -> tuple[str, str]:
     word = re.sub(r"\\\w+|[\s{}.]", "", name) or name
     elsewhere = text[: found.start()].partition("=")[2] + " " + found["rest"]
     bare = re.sub(r"[{}\\]", " ", elsewhere)
-    if re.search(rf"(?<![A-Za-z]){re.escape(word)}(?!\w)", bare):
+    if re.search(rf"(?<![A-Za-z])(?:{re.escape(word)}|[Ss])(?!\w)", bare):  # S beside C is a sine
         return text, ""
     said = _("{name} is read as zero: a potential's zero is free").format(name=word)
     return text[: found.start()] + found["rest"], said

@@ -37,8 +37,9 @@ _WAVE = re.compile(
 )
 _CAPITAL = re.compile(r"(?<![A-Za-z\\])([CS])\s*(?=\\(?:var)?theta\s*_)")
 _LETTER = re.compile(r"(?<![\w\\{])(?:[csCS])(?![\w(])(?!\s*(?:\\theta|\\vartheta|_|\())")
-_NUMBERED = re.compile(r"\\(cos|sin)\s*_\s*(\{\d+\}|\d)")
-_WORD_NUMBERED = re.compile(r"(?<![\w.\\])(cos|sin)_?([1-9]{1,3})(?!\w|\s*\()")
+_NUMBERED = re.compile(r"\\(cos|sin)\s*_\s*(\{\d+\}|\d)(?!\s*\^|\s*(?:\\theta|\\left|q|\())")
+_WORD_NUMBERED = re.compile(r"(?<![\w.\\])(cos|sin)_?([1-9]{1,3})(?=\s*(?:$|[-+*/^),;\]\n=]))")
+"""cos12, but not sin2 q1, which may be a square."""
 _DETERMINANT = re.compile(
     r"\\begin\{vmatrix\}(.*?)\\end\{vmatrix\}"
     r"|(?:\\left\s*\||\\lvert|\|)\s*\\begin\{matrix\}(.*?)\\end\{matrix\}\s*(?:\\right\s*\||\\rvert|\|)",

@@ -38,6 +38,8 @@ _WAYS = tuple(
     )
 )  # fmt: skip
 _POINTS = re.compile(r"(?<![\w.\\])(q|th|theta)_?(?:(\d)_?(p{1,2})|(p{1,2})_?(\d))(?!\w)")
+_POINT_IN_WAVE = re.compile(r"(?:sin|cos|tan)\([^()]*(?:q|th|theta)_?\d_?p{1,2}(?!\w)")
+"""q1p in a cosine is an angle."""
 _ORDERS = re.compile(r"(?<![\w.\\])D([12]?)(q|th|theta)_?(\d)(?!\w)")
 _EXPLAINED = re.compile(r"(?<![\w.\\])(\w+)\s*:?=(?!=)")
 _TIME = re.compile(r"(?<![A-Za-z])(?:t|dt)(?![A-Za-z])")
@@ -56,7 +58,8 @@ def plain_rates(text: str) -> str:
             text = pattern.sub(partial(_named, order=order, typeset=typeset), text)
     own = {*_EXPLAINED.findall(text)}
     if not typeset:
-        text = _POINTS.sub(lambda found: _of_points(found, own), text)
+        if not _POINT_IN_WAVE.search(text):
+            text = _POINTS.sub(lambda found: _of_points(found, own), text)
         text = _ORDERS.sub(lambda found: _of_orders(found, own), text)
         if _ANGLES.search(text) and not _TIMES.search(text):
             text = _OF_ANGLES.sub(lambda found: _of_letters(found, own), text)

@@ -102,7 +102,8 @@ def without_units(text: str, entry: str, place: str) -> str:
     """
     text = _PIECES.sub(lambda found: f"\\mathrm{{{_FONTS.sub(_inside, found[0])}}}", text)
     wanted = next((sizes for pattern, sizes in _ENTRIES if pattern.fullmatch(entry)), set())
-    text = _GIVEN.sub(_as_number, _SYMBOL_OF.sub("", text))
+    length = wanted == {(1, 0, 0)}
+    text = _GIVEN.sub(lambda found: _as_number(found, length), _SYMBOL_OF.sub("", text))
     own = {*_OWN_UNITS.findall(text)}
     text = _CONVERTED.sub(lambda found: _converted(found, "\\" in text, own), text)
     if wanted == {(1, 0, 0)} and "\\" not in text:
@@ -163,11 +164,14 @@ def _behind(found: re.Match[str], text: str, wanted: set[tuple[int, int, int]]) 
     return found["before"]
 
 
-def _as_number(found: re.Match[str]) -> str:
-    """``l1 = 50 cm`` as ``l1 = 0.5``; a unit that the name's letter does not have stays."""
+def _as_number(found: re.Match[str], length: bool) -> str:
+    """``l1 = 50 cm`` as ``l1 = 0.5``; a unit that the name's letter does not have stays.
+
+    ``h = 2 m`` may be two masses, unless the whole is a length.
+    """
     unit, name = _unit(found), found["name"].lstrip("\\")
     wanted = next((size for pattern, size in _NAMES if pattern.fullmatch(name)), None)
-    if wanted is None:
+    if wanted is None or (found["d"] == "m" and not length and name[0] not in "lLg"):
         return found[0]
     if unit == "deg":
         number = rf"{found['number']}*pi/180" if wanted == (0, 0, 0) else ""

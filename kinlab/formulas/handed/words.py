@@ -18,9 +18,9 @@ _CHINESE = "\u4e00-\u9fff"
 _ANY_CHINESE = re.compile(f"[{_CHINESE}]")
 _NAME = r"[\\A-Za-zα-ωΑ-Ω∂{][\\\w{}()\[\], ̇̈₀-₉'/]*"
 _FRONT = re.compile(
-    rf"^(?P<words>[^=\n]*[{_CHINESE}][^=\n]*?[\s:,]*)(?P<name>(?:{_NAME})?)\s*(?P<sign>&?:?=)"
+    rf"^(?P<words>[^-+*/^\\=\n]*[{_CHINESE}][^-+*/^\\=\n]*?[\s:,]*)(?P<name>(?:{_NAME})?)\s*(?P<sign>&?:?=)"
 )
-_COLON = re.compile(rf"^[^=:\n]*[{_CHINESE}][^=:\n]*:\s*(?=\S)")
+_COLON = re.compile(rf"^[^-+*/^\\=:\n]*[{_CHINESE}][^-+*/^\\=:\n]*:\s*(?=\S)")
 _LATIN = re.compile(
     r"^(?P<words>(?:[A-Za-zÄÖÜäöüß]+[,:]?\s+){1,9})(?P<name>[\\A-Za-zα-ω][\\\w{}₀-₉()]*)\s*(?P<sign>&?:?=)"
 )
