@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -104,7 +104,8 @@ def examine_formulas(
     file = as_judged(file, robot)
     parts = [_examined(part, robot, samples, seed) for part in (file, *file.others)]
     alike = [part for part in parts if len(part) == len(parts[0])]
-    return [_of_chain(list(same)) for same in zip(*alike, strict=True)]
+    told = [_of_chain(list(same)) for same in zip(*alike, strict=True)]
+    return [_with_remarks(one, file.remarks) for one in told] if file.remarks else told
 
 
 def as_judged(file: FormulaFile, robot: Mechanism) -> FormulaFile:
@@ -112,6 +113,12 @@ def as_judged(file: FormulaFile, robot: Mechanism) -> FormulaFile:
     if not isinstance(robot, FiveBar):
         return file
     return five_bar.with_habits(five_bar.with_equations(file), robot)
+
+
+def _with_remarks(found: Diagnosis, remarks: Mapping[str, str]) -> Diagnosis:
+    """A diagnosis with what is to be said of how its entries were read."""
+    said = tuple(remarks[one] for one in found.function.split(", ") if one in remarks)
+    return replace(found, remarks=(*found.remarks, *said))
 
 
 def _of_chain(parts: list[Diagnosis]) -> Diagnosis:

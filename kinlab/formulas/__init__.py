@@ -26,6 +26,7 @@ module          what it holds
                 Unicode, matrices
 ``typeset``     Formulas as LaTeX and MathML: the records' own LaTeX, and trees in the order of
                 the writer
+``handed/``     Formulas as they are handed in: words, code and units around them
 ``signs/``      The signs that formulas are typed with, made plain: LaTeX, products without a
                 sign, remarks
 ==============  ==================================================================================

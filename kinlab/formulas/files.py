@@ -30,6 +30,9 @@ from typing import Any
 from kinlab.errors import ExpressionError, FileError
 from kinlab.formulas import grids, tree, typed
 from kinlab.formulas.equations import solved
+from kinlab.formulas.handed.reading import as_formula
+from kinlab.formulas.signs.latex import LAMBDA
+from kinlab.formulas.signs.letters import WIDE
 from kinlab.formulas.signs.refusals import refused
 from kinlab.formulas.text import LENGTH, parse, tidied
 from kinlab.formulas.tree import Node
@@ -53,6 +56,7 @@ class FormulaFile:
         numbers: names in the texts that stand for a number that was written.
         symbol_texts: the same for symbols; a number as its digits.
         others: the file with another part of a chain of equalities for an entry's formula.
+        remarks: what is to be said of how an entry was read.
     """
 
     path: str
@@ -65,6 +69,7 @@ class FormulaFile:
     writing: typed.Hand
     numbers: Mapping[str, str] = field(default_factory=dict)
     others: tuple[FormulaFile, ...] = ()
+    remarks: Mapping[str, str] = field(default_factory=dict)
 
 
 def formula_file(
@@ -91,6 +96,8 @@ def formula_file(
     if not isinstance(robot, str) or not robot:
         raise FileError(f"{place}: " + _('robot is missing; write robot = "planar2r" or a path'))
     symbols = _table(document.pop("symbols", {}), f"{place}: [symbols]")
+    if "lambda" in symbols:
+        symbols.setdefault(LAMBDA, symbols.pop("lambda"))
     entries = _table(document.pop("formulas", {}), f"{place}: [formulas]")
     typeset = _table(document.pop("latex", {}), f"{place}: [latex]")
     for key, value in document.items():
@@ -115,8 +122,11 @@ def formula_file(
     for found, what in ((entries, "formulas"), (symbols, "symbols")):
         if len(found) > _FORMULAS:
             raise FileError(f"{place}: {len(found)} {what}; at most {_FORMULAS}")
+    remarks: dict[str, str] = {}
     for key, value in list(entries.items()):
-        parts = typed.several(_text(value, f"{place}: {key}"), key)
+        at = f"{place}: {key}"
+        entries[key], remarks[key] = as_formula(_text(value, at), key, at)
+        parts = typed.several(entries[key], key)
         if parts and not parts.keys() & entries.keys():
             del entries[key]
             entries |= parts
@@ -137,7 +147,8 @@ def formula_file(
     entries = {key: parts[0] for key, parts in chains.items()}
     read = partial(_read, place, robot, symbols, writing)
     others = (read({**entries, key: part}) for key, parts in chains.items() for part in parts[1:])
-    return replace(read(entries), others=tuple(others))
+    remarks = {key: remark for key, remark in remarks.items() if remark}
+    return replace(read(entries), others=tuple(others), remarks=remarks)
 
 
 _SIGNS = re.compile(r"[_{}\\\s]")
@@ -280,4 +291,4 @@ def _text(value: Any, place: str) -> str:
         raise refused(
             place, N_("{count} characters; at most {length}"), count=len(value), length=LENGTH
         )
-    return value.translate(typed.WIDE)
+    return value.translate(WIDE)

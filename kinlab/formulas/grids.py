@@ -44,6 +44,9 @@ _DIAGONAL = re.compile(
 )
 _SIZES = re.compile(r"\\(?:left|right|bigl|bigr|Bigl|Bigr|big|Big)(?![A-Za-z])\s?")
 _BRACKETS = {"[": "]", "(": ")", "{": "}"}
+_SYMMETRIC = {"M", "D", "H", "B", "mass_matrix"}
+"""Matrices of which a star stands for the entry on the other side of the diagonal."""
+_STAR = re.compile(r"\$?\s*(?:\*|\\ast|\\star|\\bullet|\\(?:text|mathrm)\{\s*sym\w*\.?\s*\})\s*\$?")
 _MOST = 36
 LONGEST = 20_000
 
@@ -338,8 +341,11 @@ def opened(entries: Mapping[str, str], place: str, writing: Hand | None = None) 
             continue
         if not whole:
             raise refused(at, N_("{name} is one entry, and a matrix is given"), name=name)
+        symmetric = name in _SYMMETRIC and len(grid) == len(grid[0])
         for i, row in enumerate(grid, 1):
             for j, cell in enumerate(row, 1):
+                if symmetric and i != j and _STAR.fullmatch(cell):
+                    cell = grid[j - 1][i - 1]
                 long = name in LONG or "_" in name
                 below = f"[{i - 1}" if long else f"{i}"
                 column = len(row) > 1 or name in TWO

@@ -18,6 +18,7 @@ from kinlab.formulas.signs import latex
 from kinlab.formulas.signs.beside import with_products
 from kinlab.formulas.signs.brackets import closes, parts_at
 from kinlab.formulas.signs.degrees import in_radians
+from kinlab.formulas.signs.letters import ABOVE, BELOW, SIGNS, WIDE, ascii_text, with_dots
 from kinlab.formulas.signs.refusals import refused
 from kinlab.formulas.signs.remarks import without_remarks
 from kinlab.host.language import N_, _
@@ -63,21 +64,8 @@ def latexless(text: str) -> str:
     return re.sub(r"_\{?(\w+)\}?", r"\1 ", text)
 
 
-# -------- Unicode
+# -------- Products without a sign
 
-_BELOW = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
-_ABOVE = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789")
-WIDE = {code: chr(code - 0xFEE0) for code in range(0xFF01, 0xFF5F)} | {0x3000: " ", 0x3002: "."}
-"""Signs, digits and letters of a Chinese keyboard, and the plain ones."""
-_SIGNS = WIDE | str.maketrans(
-    {"·": "*", "⋅": "*", "×": "*", "−": "-", "–": "-", "÷": "/", "√": " sqrt", "½": "(1/2)"}
-)
-_LETTERS = (
-    "α alpha β beta γ gamma δ delta ε epsilon ϵ epsilon ζ zeta η eta θ theta ϑ theta ι iota "
-    "κ kappa λ lambda μ mu ν nu ξ xi π pi ρ rho σ sigma τ tau υ upsilon φ phi ϕ phi χ chi ψ psi "
-    "ω omega Γ Gamma Δ Delta Θ Theta Λ Lambda Ξ Xi Φ Phi Ψ Psi Ω Omega ℓ l"
-)
-_GREEK = dict(zip(_LETTERS.split()[::2], _LETTERS.split()[1::2], strict=True))
 _ALONE = re.compile(
     r"(?:(?<![A-Za-z])(?:sin|cos|tan|sqrt)(?![A-Za-z])|(?<![A-Za-z])[A-Za-z](?![A-Za-z])|[^A-Za-z])*"
 )
@@ -94,51 +82,7 @@ _WORDS = """
 """Names and functions of several letters, of which none is a product."""
 _GLUED = re.compile(r"_\w[A-Za-z]")
 """A product of names without a sign or a blank, as only LaTeX has it."""
-_PRIMED = re.compile(r"(?<![A-Za-z])(q|th|theta|θ)(_?[\d₀-₉]+)('{1,2}|′{1,2}|″)(?!')")
-"""θ1' and q2'', the rates of a joint."""
 _CENTRE = re.compile(r"lc([₀-₉]+)")
-_DOTTED = re.compile(r"([A-Za-zα-ωϑϕℓ])([\u0307\u0308])")
-_SUBSCRIPTS = re.compile("([₀-₉]+)")
-_SUPERSCRIPTS = re.compile("([⁰¹²³⁴-⁹]+)")
-
-
-def ascii_text(text: str, place: str = "expression", *, as_latex: bool = False) -> str:
-    """``θ̇₁² + l₂`` as ``thetad1**2 + l2``, or as LaTeX.
-
-    Raises:
-        ExpressionError: a letter that no formula has.
-    """
-    text = unicodedata.normalize("NFD", text).translate(_SIGNS)
-    if text.isascii():
-        return text
-    text = _DOTTED.sub(lambda found: _dotted(found, as_latex), text)
-    below, above = (r"_{\1}", r"^{\1}") if as_latex else (r"\1", r"**\1 ")
-    if not as_latex:
-        text = re.sub(r"([₀-₉⁰¹²³⁴-⁹])(?=[0-9])", r"\1 ", text)
-    text = _SUPERSCRIPTS.sub(above, _SUBSCRIPTS.sub(below, text))
-    text = text.translate(_BELOW).translate(_ABOVE)
-    for letter, name in _GREEK.items():
-        text = text.replace(letter, rf"\{name} " if as_latex and name != "l" else name)
-    text = re.sub(r" (?=_\{|[0-9])", "", text) if as_latex else text
-    if not text.isascii():
-        strange = next(c for c in text if not c.isascii())
-        raise refused(place, N_("{strange!r} has no meaning in a formula"), strange=strange)
-    return text
-
-
-def _rate(found: re.Match[str]) -> str:
-    """A prime as the dots that it means."""
-    twice = len(found[3]) == 2 or found[3] == "″"
-    return found[1] + ("\u0308" if twice else "\u0307") + found[2]
-
-
-def _dotted(found: re.Match[str], as_latex: bool) -> str:
-    letter, dot = found.groups()
-    dots = 1 if dot == "\u0307" else 2
-    if as_latex:
-        return rf"\{'d' * dots}ot{{{letter}}}"
-    return letter + "d" * dots
-
 
 # -------- A formula
 
@@ -162,10 +106,10 @@ def plain_formula(text: str, place: str = "expression", writing: Hand | None = N
     """
     writing = hand([text]) if writing is None else writing
     typeset = is_latex(text)
-    text = _CAPITAL_FUNCTION.sub(_small, _PRIMED.sub(_rate, bare(text)))
+    text = _CAPITAL_FUNCTION.sub(_small, with_dots(bare(text)))
     text = in_radians(text, "pi" if text.isascii() and not typeset else "π", calls=not typeset)
     if not typeset and _side_by_side(text, writing):
-        text = _CENTRE.sub(lambda m: f"l_{{c{m[1].translate(_BELOW)}}}", text)
+        text = _CENTRE.sub(lambda m: f"l_{{c{m[1].translate(BELOW)}}}", text)
         typeset, text = True, text.replace("**", "^")
     text = ascii_text(text, place, as_latex=typeset)
     if typeset:
@@ -173,8 +117,12 @@ def plain_formula(text: str, place: str = "expression", writing: Hand | None = N
     else:
         text = _waves_apart(_plain_signs(text, place), place, writing)
         text = with_products(_without_indices(text, place, writing), _FUNCTIONS, place)
+        text = _LAMBDA.sub(latex.LAMBDA, text)
     return _with_squares(_capitals(text, place, writing), place, writing)
 
+
+_LAMBDA = re.compile(r"(?<![\w.])lambda(?!\w)")
+"""A name that Python has a use for."""
 
 _OF_ONE_LETTER = r"sin|cos|tan|sqrt|lc[₀-₉]+|[^\W\d_][\u0307\u0308]?(?:_?\d+|[₀-₉]+)?"
 _OF_LETTERS = (
@@ -199,10 +147,10 @@ def leaves_of(text: str, place: str, writing: Hand, typeset: bool) -> list[latex
         latex.expression(text.replace("**", " ^"), place, found, writing.known)
         return found
     for piece in re.finditer((_OF_ONE_LETTER if typeset else _OF_LETTERS) + _REST, text):
-        plain = piece.group().translate(_ABOVE)
+        plain = piece.group().translate(ABOVE)
         if not plain.isdigit():
             with suppress(ExpressionError):  # a function's name alone is no formula
-                plain = plain_formula(plain.translate(_SIGNS), place, writing)
+                plain = plain_formula(plain.translate(SIGNS), place, writing)
         found.append(latex.Leaf(plain, *piece.span()))
     return found
 
@@ -621,16 +569,16 @@ def several(text: str, entry: str) -> dict[str, str]:
 def _uses(names: Iterable[str], lines: Iterable[str]) -> bool:
     """Whether a line without a left side is made of one of the names: it is what is asked for."""
     bare_names = "|".join(map(re.escape, names))
-    lines = (re.sub(r"[_{}\\]", "", one.translate(_BELOW)) for one in lines if "=" not in one)
+    lines = (re.sub(r"[_{}\\]", "", one.translate(BELOW)) for one in lines if "=" not in one)
     return any(re.search(rf"(?:{bare_names})(?!\d)", one) for one in lines)
 
 
 _STARTS_FORMULA = re.compile(r"^[-(\d.]")
 _BY_DEFINITION = re.compile(
     r"\\partial|∂|\\nabla|\\(?:sum|int)(?![A-Za-z])|\\d?t?frac\s*\{\s*(?:\\mathrm\s*\{)?d|\bd\w*\s*/\s*d\w"
-    r"|\^\s*\{?(?:T\b|\\top|\\mathrm\s*\{?T)|^-?\s*[xyzVUPTKL](?:_\{?\w+\}?)?$"
+    r"|\^\s*\{?(?:T\b|\\top|\\mathrm\s*\{?T)|^-?\s*[xyzVUPTKL](?:_\{?\w+\}?)?$|^[TK]\s*-\s*[VUP]$"
 )
-"""A part of a chain of equalities that says what the entry is: a derivative, -y, J^T f."""
+"""A part of a chain of equalities that says what the entry is: a derivative, -y, J^T f, T - V."""
 
 
 _LONGEST_CHAIN = 8
@@ -790,6 +738,8 @@ def entry_name(text: str, place: str = "expression", writing: Hand | None = None
     if len(text) > _LONGEST_NAME:
         raise refused(place, N_("{text}... is no name of an entry"), text=text[:30])
     typed = _IN_BASE.sub("", _OF_STATE.sub("", bare(text).strip("& ")).strip())
+    if _LAMBDA.fullmatch(typed):
+        return latex.LAMBDA
     if _DETERMINANT.fullmatch(typed):
         return "det J"
     if "∂" in typed:

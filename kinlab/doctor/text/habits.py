@@ -27,6 +27,8 @@ _MOTION = re.compile(r"q(d{0,2})\d+")
 _SEVERAL = re.compile(r"(q|qd|qdd|dq|ddq)([1-9]{2,})")
 _SLIDES = (("d{k}",), ("dd{k}", "d{k}dot", "ddot{k}"), ("ddd{k}", "d{k}ddot", "dddot{k}"))
 _SUMMED = re.compile(r"phi_?(\d) *\+ *phi_?\d")
+_OF_CENTRE = re.compile(r"I(?:C|c|G|S|cm)(\d)")
+"""I_{C_1} and I_{G1}: the inertia about the centre of mass, which the robot's I1 is."""
 _FIRST = {"w1": "qd1", "alpha1": "qdd1"}
 """Of the first link, which turns as its joint does; of others it may be the link or the joint."""
 _MAY_MOVE = re.compile(r"a\d")
@@ -72,6 +74,10 @@ def with_habits(file: FormulaFile, robot: Mechanism) -> FormulaFile:
         if not found and plain in _FIRST and name not in turning:
             found = _FIRST[plain]
         found = found or _of_several(plain, robot.n)
+        centre = _OF_CENTRE.fullmatch(plain)
+        if not found and centre and (own := f"I{centre[1]}") not in used:
+            found = own if own in words else as_text(named.others.get(own, ()))
+            found = "" if own not in words and own not in named.others else found
         if not found and robot.n == 1:  # m and l of the only link
             alone = f"{plain}1"
             if tree.names(canonical(alone)) <= motion | words:

@@ -8,6 +8,7 @@ module        what it holds
 ``degrees``   Angles in degrees, as angles in radians
 ``latex``     LaTeX of the textbooks as plain arithmetic text, which the whitelist parser then
               reads
+``letters``   Letters and signs of Unicode as plain text or LaTeX
 ``refusals``  What is said of a formula that cannot be read, in the language of the reader
 ``remarks``   What stands beside a formula and says nothing of its value: tags, units, words, old
               fonts

@@ -1,0 +1,16 @@
+"""Formulas as they are handed in: with words, code and units around them, dressed for a page.
+
+=============  ===================================================================================
+module         what it holds
+=============  ===================================================================================
+``code``       Formulas as they stand in programs: ``lambda``, ``def``, ``self.l1``, comments
+``columns``    A column of names before a column of formulas
+``constants``  A free constant behind a potential
+``dressed``    LaTeX as it is dressed for a page: boxes, arrows, colours, old commands
+``letters``    Letters and signs of word processors and web pages
+``rates``      Rates by the names that programs of algebra give them
+``reading``    All that is done to a formula as it is handed in, in the order in which it is done
+``units``      Units behind numbers and formulas
+``words``      Words around a formula
+=============  ===================================================================================
+"""

@@ -1,0 +1,167 @@
+"""Formulas as they stand in programs: ``lambda q: ...``, ``def x(q):``, ``self.l1``, ``// why``.
+
+What is around the formula is left out, and what only programs have is written as a formula.
+"""
+
+from __future__ import annotations
+
+import re
+from itertools import islice
+
+from kinlab.formulas.signs.brackets import closes, outside, parts_at
+
+_FENCE = re.compile(r"^\s*```[\w+-]*\s*\n(.*?)\n?\s*```\s*$", re.DOTALL)
+_TICKS = re.compile(r"^\s*`([^`]+)`\s*[.;]?\s*$")
+_NOTES = re.compile(r"/\*.*?\*/|\(\*.*?\*\)", re.DOTALL)
+_COMMENT = re.compile(
+    r"[ \t]//(?:[ \t]*(?!(?:sin|cos|tan|sqrt)\b)[A-Za-z\u4e00-\u9fff',.:-]+)+[ \t]*$", re.MULTILINE
+)
+"""Behind two slashes words alone; what may be a divisor stays."""
+_LONG_WORD = re.compile(r"[A-Za-z]{3}|[\u4e00-\u9fff]")
+_STATE = r"(?:q|qd|qdd|dq|ddq|th|theta|thd|thetad|θ|t|v|a)_?\d?"
+_LAMBDA = re.compile(rf"^(\s*\w+\s*=\s*)?lambda\s+{_STATE}(?:\s*,\s*{_STATE})*\s*:\s*(?=\S)")
+_DEFINED = re.compile(
+    rf"^\s*def\s+(\w+)\s*\(\s*(?:self\s*,\s*)?{_STATE}(?:\s*,\s*{_STATE})*\s*\)[^:\n]*:\s*"
+)
+_RETURN = re.compile(r"^[ \t]*return\s+(?=\S)", re.MULTILINE)
+_IMPORT = re.compile(r"^[ \t]*(?:import|from)[ \t]+\w[^\n]*\n", re.MULTILINE)
+_OWNER = re.compile(
+    r"(?<![\w.])(self|this|p|par|param|params|robot|arm|obj|model|cfg|config|prm)\.(?=[A-Za-z_])"
+)
+_SINGLE = re.compile(r"(?<![\w.])(sin|cos|tan|sqrt|pow|atan2|fabs|asin|acos)f(?=\s*\()")
+_STANDARD = re.compile(r"(?<![\w.])std::(?=[a-z])")
+_GLUED = re.compile(r"(?<![\w.\\])([A-Za-z]+_?\d+)(sin|cos|tan|sqrt)(?=\s?\()")
+_TWO_SIGNS = re.compile(r"(?<![<>!=:])==(?!=)")
+_NAMES = re.compile(r"\s*([A-Za-z]\w*(?:\s*,\s*[A-Za-z]\w*)+)\s*=(?!=)\s*(\S.*)")
+_BRACES = re.compile(r"^(\s*[A-Za-z]\w*(?:\([\w, ]*\))?\s*:?=)?\s*(?=\{)")
+_COMMA = re.compile(r"(?<![\w.,{\[])(\d+),(\d+)(?![\d,.])")
+_OTHER_COMMA = re.compile(r"(?<!\d),|,(?!\d)")
+_CALL = re.compile(r"(?:(?<![A-Za-z])(?!(?:sin|cos|tan|sqrt)\()[A-Za-z_]\w*|[\])])\s?\(\s*-?$")
+_POINT = re.compile(r"\d\.\d")
+_SUMS = re.compile(r"(?<![\w.])(?:np\.|numpy\.)?(?:linalg\.)?(dot|sum|norm)\s*\((?=\s*\[)")
+_NUMBERED = re.compile(
+    r"^\s*(?:\(\s*\d+(?:[.-]\d+)?[a-z]?\s*\)|\d+[.)])\s*(?=[\\A-Za-zα-ω][^=\n]{0,30}=)"
+)
+_SQUARE = re.compile(r"(?:^|[-+*/^=(\[ ]|(?<![\w.])\d)\[(?=[^\[\]]{3})")
+_MOST = 40
+_NEAR = 30
+"""Letters in front of a number that say whether it is an index."""
+
+
+def without_code(text: str, alone: bool) -> str:
+    """The formula of a piece of a program.
+
+    Args:
+        text: as typed.
+        alone: whether it is one number, no vector and no matrix.
+    """
+    for around in (_FENCE, _TICKS):
+        found = around.match(text)
+        text = found[1] if found else text
+    text = _NOTES.sub(" ", text)
+    text = _COMMENT.sub(lambda m: " " if _LONG_WORD.search(m[0]) else m[0], text)
+    text = _NUMBERED.sub("", text)
+    text = _of_function(text)
+    if "\\" in text or "$" in text:
+        return text
+    owner, *others = sorted({*_OWNER.findall(text)}) or [""]
+    if owner and not others and not re.search(rf"(?<![\w.]){owner}(?![\w.])", text):
+        text = _OWNER.sub("", text)
+    text = _STANDARD.sub("math.", _SINGLE.sub(r"\1", text))
+    text = _TWO_SIGNS.sub("=", _GLUED.sub(r"\1 \2", text))
+    text = "\n".join(map(_one_each, text.split("\n")))
+    text = _without_lists(_in_brackets(text))
+    text = _in_parentheses(text) if alone else text
+    if alone and not _POINT.search(text) and not _OTHER_COMMA.search(text):
+        text = _COMMA.sub(lambda found: _with_point(found, text), text)
+    return text
+
+
+def _with_point(found: re.Match[str], text: str) -> str:
+    """``0,5`` as ``0.5``, but for two indices or arguments: ``C(1,2)``, ``atan2(1,2)``."""
+    listed = _CALL.search(text[max(0, found.start() - _NEAR) : found.start()])
+    return found[0] if listed else f"{found[1]}.{found[2]}"
+
+
+def _of_function(text: str) -> str:
+    """What a function answers, with the lines before."""
+    text = _LAMBDA.sub(lambda found: found[1] or "", text)
+    found = _DEFINED.match(_IMPORT.sub("", text))
+    if found is None:
+        return text
+    body = _IMPORT.sub("", text)[found.end() :]
+    return _RETURN.sub("", "\n".join(line.strip() for line in body.split("\n") if line.strip()))
+
+
+def _one_each(line: str) -> str:
+    """``c1, s1 = cos(q1), sin(q1)`` as two lines."""
+    found = _NAMES.fullmatch(line)
+    if found is None:
+        return line
+    names, values = parts_at(found[1], ","), parts_at(found[2].rstrip("; \t"), ",")
+    if len(names) != len(values) or any("=" in value for value in values):
+        return line
+    return "\n".join(f"{name} = {value}" for name, value in zip(names, values, strict=True))
+
+
+def _in_brackets(text: str) -> str:
+    """``{a, b}`` as ``[a, b]``, a list of Mathematica's or C's."""
+    found = _BRACES.match(text)
+    start = found.end() if found else 0
+    body = text.rstrip("; \t\n")
+    if (
+        found is None
+        or closes(body, start) != len(body) - 1
+        or body[start + 1 :].lstrip()[:1] == "{"
+    ):
+        return text
+    inside = body[start + 1 : -1]
+    return f"{body[:start]}[{inside}]" if len(parts_at(inside, ",")) > 1 else text
+
+
+def _in_parentheses(text: str) -> str:
+    """``[a + b]θ̈₁`` as ``(a + b)θ̈₁``: a sum in brackets, which is no list."""
+    for found in islice(_SQUARE.finditer(text), _MOST):
+        start, end = found.end() - 1, closes(text, found.end() - 1)
+        inside = text[start + 1 : end]
+        if end > 0 and _is_sum(inside) and len(parts_at(inside, ",;\n")) == 1:
+            text = f"{text[:start]}({inside}){text[end + 1 :]}"
+    return text
+
+
+def _without_lists(text: str) -> str:
+    """``dot([a, b], [c, d])``, ``sum([a, b])`` and ``norm([a, b])`` written out."""
+    start = 0
+    for _ in range(_MOST):
+        found = _SUMS.search(text, start)
+        end = closes(text, found.end() - 1) if found else -1
+        if found is None or end < 0:
+            break
+        lists = [_members(one) for one in parts_at(text[found.end() : end], ",")]
+        told = _written_out(found[1], lists)
+        start = found.start() + 1
+        if told:
+            text = f"{text[: found.start()]}{told}{text[end + 1 :]}"
+    return text
+
+
+def _members(text: str) -> list[str]:
+    if text[:1] != "[" or closes(text) != len(text) - 1 or "[" in text[1:]:
+        return []
+    return [one for one in parts_at(text[1:-1], ",;") if one]
+
+
+def _written_out(name: str, lists: list[list[str]]) -> str:
+    if not all(lists) or len(lists) != (2 if name == "dot" else 1):
+        return ""
+    if name == "dot":
+        if len(lists[0]) != len(lists[1]):
+            return ""
+        return f"({' + '.join(f'({a})*({b})' for a, b in zip(*lists, strict=True))})"
+    if name == "sum":
+        return f"({' + '.join(f'({a})' if _is_sum(a) else a for a in lists[0])})"
+    return f"sqrt({' + '.join(f'({a})**2' for a in lists[0])})"
+
+
+def _is_sum(text: str) -> bool:
+    return any(one in "+-" for _k, one in outside(text))

@@ -1,0 +1,62 @@
+"""Letters and signs of word processors and web pages: 𝑥, 〖θ〗, ∙, ⅓, ``<sub>1</sub>``."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+
+from kinlab.formulas.signs.refusals import refused
+from kinlab.host.language import N_, _
+
+_MATHEMATICAL = re.compile("[\U0001d400-\U0001d7ff\u210e\u2112]")
+"""Italic, bold and script letters and digits, Planck's h and the Lagrangian's L."""
+_UNSEEN = dict.fromkeys(
+    (0x00AD, 0x200B, 0x200C, 0x200D, 0x200E, 0x200F, 0x2060, 0x2061, 0x2063, 0xFEFF)
+)
+_PLAIN = str.maketrans(
+    {"∙": "*", "∗": "*", "•": "*", "⁎": "*", "⨯": "*", "∕": "/", "⁄": "/"}
+    | {"\u2062": " ", "\u00a0": " ", "\u2009": " ", "\u202f": " ", "\u2003": " "}
+    | {"〖": "(", "〗": ")", "∴": " ", "⇒": " ", "⟹": " "}
+)
+_FRACTION = re.compile("(\\d\\s?)?([⅓⅔¼¾⅕⅖⅗⅘⅙⅚⅛⅜⅝⅞½])")
+_BELOW = re.compile(r"<sub>\s*(\w{1,6})\s*</sub>", re.IGNORECASE)
+_ABOVE = re.compile(r"<sup>\s*(\d)\s*</sup>", re.IGNORECASE)
+_BREAK = re.compile(r"<br\s*/?>", re.IGNORECASE)
+_SUBSCRIPT = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+_SUPERSCRIPT = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def plain_letters(text: str, place: str) -> str:
+    """The text with the letters that a keyboard, or the reader of Unicode, has.
+
+    Raises:
+        ExpressionError: ``2½``, which may be two and a half or 1.
+    """
+    if "<" in text:
+        text = _BREAK.sub("\n", _BELOW.sub(_below, _ABOVE.sub(_above, text)))
+    if text.isascii():
+        return text
+    text = _MATHEMATICAL.sub(lambda found: unicodedata.normalize("NFKC", found[0]), text)
+    text = text.translate(_UNSEEN).translate(_PLAIN)
+    return _FRACTION.sub(lambda found: _fraction(found, place), text)
+
+
+def _below(found: re.Match[str]) -> str:
+    inside = found[1]
+    return inside.translate(_SUBSCRIPT) if inside.isdigit() else f"_{inside}"
+
+
+def _above(found: re.Match[str]) -> str:
+    return found[1].translate(_SUPERSCRIPT)
+
+
+def _fraction(found: re.Match[str], place: str) -> str:
+    number, sign = found.groups()
+    share = unicodedata.normalize("NFKC", sign).replace("\u2044", "/")
+    if number:
+        remedy = _("{sum} or {product}").format(
+            sum=f"({number.strip()} + {share})", product=f"{number.strip()}*({share})"
+        )
+        said = N_("{what} can be read in two ways; write {remedy}")
+        raise refused(place, said, what=found[0], remedy=remedy)
+    return sign if sign == "½" else f"({share})"

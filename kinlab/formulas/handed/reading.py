@@ -1,0 +1,44 @@
+"""All that is done to a formula as it is handed in, in the order in which it is done."""
+
+from __future__ import annotations
+
+import re
+
+from kinlab.formulas.handed.code import without_code
+from kinlab.formulas.handed.columns import of_column
+from kinlab.formulas.handed.constants import without_constant
+from kinlab.formulas.handed.dressed import undressed
+from kinlab.formulas.handed.letters import plain_letters
+from kinlab.formulas.handed.rates import plain_rates
+from kinlab.formulas.handed.units import without_units
+from kinlab.formulas.handed.words import without_words
+
+_ALONE = re.compile(
+    r"(?:p_?)?[xyz]|[VUPTKL]|phi|det\w*|E_?[pk]|\w*energy|lagrangian|[\w,\[\]]*[\d\]]"
+)
+"""Entries that are one number."""
+_GAP = re.compile(r"\s{12,}")
+
+
+def as_formula(text: str, entry: str, place: str) -> tuple[str, str]:
+    """The formula in what was handed in, as :mod:`kinlab.formulas.typed` reads it.
+
+    Args:
+        text: as typed, with the words, code and units around it.
+        entry: what the formula is asked for.
+        place: what to put in front of a message.
+
+    Returns:
+        The formula, nothing changed in it where nothing is around it; and what is to be said of
+        how it was read, or nothing.
+
+    Raises:
+        ExpressionError: what can be read in two ways.
+    """
+    text = _GAP.sub(lambda gap: "\n" if "\n" in gap[0] else " ", plain_letters(text, place))
+    text = without_code(text, bool(_ALONE.fullmatch(entry)))
+    text = undressed(text, entry)
+    text = without_words(text, entry, place)
+    text = plain_rates(text)
+    text, said = without_constant(without_units(text, entry, place), entry)
+    return of_column(text, entry, place), said

@@ -1,0 +1,403 @@
+"""Formulas as they are handed in: units, words, code and dress around them are no part of them."""
+
+from __future__ import annotations
+
+import pytest
+
+import kinlab as kl
+from kinlab.errors import ExpressionError
+from kinlab.formulas.text import formula_file
+
+X = "l1*c1 + l2*c12"
+LATEX = r"l_1 c_1 + l_2 c_{12}"
+G2 = "m2*g*l2*c12"
+TAU2 = "m2*l2^2*({a1}+{a2}) + m2*l1*l2*c2*{a1} + m2*l1*l2*s2*{v1}^2 + m2*g*l2*cos(q1+q2)"
+M11 = "1.115 + 0.6*cos(q2)"
+V = "(m1+m2)*g*l1*s1 + m2*g*l2*s12"
+
+
+def right(robot, entry, text):
+    found = kl.diagnose(robot, entry, text)
+    assert found.agrees, f"{text}\n{found}"
+    return found
+
+
+def refused(robot, entry, text, said="."):
+    with pytest.raises(ExpressionError, match=said):
+        kl.diagnose(robot, entry, text)
+
+
+# -------- Units
+
+
+@pytest.mark.parametrize(
+    ("entry", "text"),
+    [
+        ("x", rf"x = {LATEX}\ \text{{m}}"), ("x", rf"${LATEX} \text{{ m}}$"), ("y", "l1*s1 + l2*s12 (m)"),
+        ("x", f"x = {X} (in m)"), ("x", f"x = {X} [m]"), ("x", f"x = {X} m"), ("x", f"x = {X}, [x] = m"),
+        ("x", rf"{LATEX}\,\mathrm{{m}}, \quad l_1 = 0.5\,\mathrm{{m}}"),
+        ("M11", r"M_{11} = 1.115 + 0.6\cos\theta_2\ \mathrm{kg\,m^2}"), ("M11", f"{M11} kg m^2"),
+        ("M11", "M11 = 1.115 + 0.6 cos θ2 kg·m²"), ("M11", f"({M11}) kg*m^2"), ("M11", f"{M11} (kg m^2)"),
+        ("M22", "0.24 kg m^2"), ("M22", r"0.24\ \text{kg}\cdot\text{m}^2"), ("C12", "-0.3*s2*(qd1+qd2) Nms"),
+        ("g2", f"{G2} N m"), ("g2", f"{G2} (N m)"), ("g2", f"{G2} kg m^2/s^2"),
+        ("V", "17.1675*(1+s1) + 5.886*(1+s12) J"), ("V", "17.1675*s1 + 5.886*s12 (J)"),
+        ("x", f"x = {X}, l1 = 0.5 m, l2 = 0.4 m"), ("x", f"x = {X}, l1 = 50 cm, l2 = 400 mm"),
+        ("x", rf"{LATEX}, \quad l_1 = 50\,\text{{cm}}"), ("x", "50 cm * cos q1 + 40 cm * cos(q1+q2)"),
+        ("x", r"50\,\mathrm{cm}\,c_1 + 40\,\mathrm{cm}\,c_{12}"), ("x", "0.5 m * cos(q1) + 0.4 m * cos(q1+q2)"),
+        ("g2", f"{G2}, m2 = 1500 g, g = 9.81 m/s^2"), ("g2", f"{G2}, m2 = 1.5 kg"),
+        ("x", "l1*cos(q1 + 0 deg) + l2*cos(q1 + q2)"),
+    ],
+)  # fmt: skip
+def test_units_are_left_out_or_converted(entry, text):
+    right("planar2r", entry, text)
+
+
+@pytest.mark.parametrize(
+    "unit", ["[cm]", "(in cm)", "cm", r"\ \text{cm}", r"\,\mathrm{mm}", "(mm)"]
+)
+def test_a_formula_in_another_unit_is_refused_with_the_remedy(unit):
+    refused("planar2r", "x", rf"x = 50 c_1 + 40 c_{{12}} {unit}", "SI units")
+
+
+@pytest.mark.parametrize(
+    ("entry", "text"),
+    [
+        ("g2", f"{G2} (m)"), ("g2", r"m_2 g l_2 c_{12}\,\mathrm{m}"), ("g2", f"{G2}, l2 = 0.4 kg"),
+        ("M22", "0.24 m"), ("x", f"m*{X} m"), ("g2", f"{G2}, m2 = 1.5 m"), ("T", "0.24 N"),
+    ],
+)  # fmt: skip
+def test_a_unit_that_may_be_a_name_or_is_another_stays(entry, text):
+    refused("planar2r", entry, text)
+
+
+def test_a_mass_in_the_middle_is_no_unit():
+    assert kl.diagnose("single_link", "V", "h = 0.5 m; V = h*g*l*sin(q)").agrees
+    found = kl.diagnose("single_link", "g1", "0.5*m*g*l*cos(q)")
+    assert found.agrees
+    assert not kl.diagnose("planar2r", "g2", "1500 g * l2*c12").agrees  # no gram
+
+
+# -------- LaTeX as it is dressed
+
+
+@pytest.mark.parametrize(
+    ("entry", "text"),
+    [
+        ("x", rf"\boxed{{x = {LATEX}}}"), ("x", rf"x = \boxed{{{LATEX}}}"), ("x", rf"$$\boxed{{x = {LATEX}}}$$"),
+        ("x", rf"\color{{red}}{{x = {LATEX}}}"), ("x", rf"x = \textcolor{{blue}}{{{LATEX}}}"),
+        ("x", rf"\therefore x = {LATEX}"), ("x", rf"\Rightarrow\ x = {LATEX}"), ("x", f"=> x = {X}"), ("x", f"∴ x = {X}"),
+        ("x", rf"\begin{{eqnarray}} x &=& {LATEX}\end{{eqnarray}}"),
+        ("x", r"\begin{eqnarray*} x & = & l_1 c_1 \\ & & + l_2 c_{12}\end{eqnarray*}"),
+        ("x", r"\nicefrac{1}{2}\,c_1 + \sfrac{2}{5} c_{12}"), ("x", r"{1\over 2}c_1 + {2 \over 5}c_{12}"),
+        ("x", rf"x = {LATEX}\,."), ("x", rf"x = {LATEX}~."), ("x", rf"x = {LATEX}\;,"),
+        ("x", r"l_1 c\theta_1 + l_2 c(\theta_1+\theta_2)"), ("x", r"l_1 C\theta_1 + l_2 C\theta_{12}"),
+        ("x", r"l_1 c(\theta_1) + l_2 c\left(\theta_1+\theta_2\right)"), ("x", "l1*c(q1) + l2*c(q1+q2)"),
+        ("x", r"l_1 \cos_1 + l_2 \cos_{12}"), ("y", r"l_1 \sin_1 + l_2 \sin_{12}"), ("x", "l1*cos1 + l2*cos12"),
+        ("g", r"\vec{g} = \begin{Bmatrix} 17.1675 c_1 + 5.886 c_{12} \\ 5.886 c_{12} \end{Bmatrix}"),
+        ("g", r"\boldsymbol{g} = \begin{bmatrix} 17.1675 c_1 + 5.886 c_{12} \\ 5.886 c_{12} \end{bmatrix}"),
+        ("L", r"\mathcal L = \tfrac12 (m_1+m_2) l_1^2\dot q_1^2 + \tfrac12 m_2 l_2^2(\dot q_1+\dot q_2)^2"
+              r" + m_2 l_1 l_2 c_2 \dot q_1(\dot q_1+\dot q_2) - (m_1+m_2) g l_1 s_1 - m_2 g l_2 s_{12}"),
+        ("L", r"L = T - V = \frac12 (m_1+m_2) l_1^2\dot q_1^2 + \frac12 m_2 l_2^2(\dot q_1+\dot q_2)^2"
+              r" + m_2 l_1 l_2 c_2 \dot q_1(\dot q_1+\dot q_2) - (m_1+m_2) g l_1 s_1 - m_2 g l_2 s_{12}"),
+        ("tau2", r"\Gamma_2 = m_2l_2^2(\ddot q_1+\ddot q_2)+m_2l_1l_2c_2\ddot q_1+m_2l_1l_2s_2\dot q_1^2+m_2gl_2c_{12}"),
+        ("det", r"\begin{vmatrix} -l_1 s_1 - l_2 s_{12} & -l_2 s_{12} \\ l_1 c_1 + l_2 c_{12} & l_2 c_{12} \end{vmatrix}"),
+        ("det", r"\left|\begin{matrix} -l_1 s_1 - l_2 s_{12} & -l_2 s_{12} \\ l_1 c_1 + l_2 c_{12} & l_2 c_{12} \end{matrix}\right|"),
+        ("det", r"\left|\mathbf{J}\right| = l_1 l_2 (s_{12}c_1 - c_{12}s_1) = l_1l_2s_2"),
+        ("det", r"\det(J) = (-l_1s_1-l_2s_{12})l_2c_{12} + l_2s_{12}(l_1c_1+l_2c_{12}) = l_1l_2s_2"),
+        ("M", r"\begin{bmatrix} 1.115+0.6c_2 & 0.24+0.3c_2 \\ \ast & 0.24 \end{bmatrix}"),
+        ("M", r"\begin{bmatrix} 1.115+0.6c_2 & \star \\ 0.24+0.3c_2 & 0.24 \end{bmatrix}"),
+    ],
+)  # fmt: skip
+def test_what_only_looks_is_left_out(entry, text):
+    right("planar2r", entry, text)
+
+
+COLUMN = rf"\begin{{bmatrix}} x \\ y \end{{bmatrix}} = \begin{{bmatrix}} {LATEX} \\ l_1 s_1 + l_2 s_{{12}} \end{{bmatrix}}"
+BRACE = (
+    rf"\left\{{\begin{{array}}{{l}} x = {LATEX} \\ y = l_1 s_1 + l_2 s_{{12}}\end{{array}}\right."
+)
+TORQUES = (
+    r"\begin{bmatrix}\tau_1\\\tau_2\end{bmatrix} = \begin{bmatrix}(m_1+m_2) g l_1 c_1 + m_2 g l_2 c_{12}"
+    r"\\ m_2 g l_2 c_{12}\end{bmatrix}"
+)
+
+
+@pytest.mark.parametrize("entry", ["x", "y"])
+def test_of_a_column_the_entry_s_line(entry):
+    for text in (COLUMN, BRACE, COLUMN.replace("x \\", "p_x \\").replace("y \\", "p_y \\")):
+        right("planar2r", entry, text)
+
+
+def test_a_column_of_the_whole():
+    right("planar2r", "g", TORQUES.replace(r"\tau", "g"))
+    file = formula_file({"robot": "planar2r", "formulas": {"tau": TORQUES}}, "f.toml")
+    assert list(file.formulas) == ["tau1", "tau2"]
+
+
+@pytest.mark.parametrize(
+    ("entry", "text"),
+    [
+        ("x", r"1\over 2 c_1 + 0.4 c_{12}"), ("x", r"l_1 c(\theta_1) + c l_2 c_{12}"),
+        ("M", r"\begin{vmatrix} 1 & 2 \\ 3 & 4 \end{vmatrix}"), ("J", r"\begin{bmatrix} 1 & \ast \\ 1 & 1 \end{bmatrix}"),
+        ("x", r"l_1 C(q_1) + l_2 c_{12}"), ("g2", r"\Gamma_2 = m_2 g l_2 c_{12} + \Gamma_1"),
+        ("x", r"l_1 \cos^{-1} q_1"), ("x", r"\begin{bmatrix}a\\b\end{bmatrix} = \begin{bmatrix}l_1\\l_2\end{bmatrix}"),
+    ],
+)  # fmt: skip
+def test_dress_that_may_mean_something_is_refused(entry, text):
+    refused("planar2r", entry, text)
+
+
+# -------- Words
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        rf"末端的 x 坐标为 $x = {LATEX}$", f"末端x坐标：x = {X}", f"末端x坐标 = {X}", f"x坐标为：x = {X}",
+        f"x = {X}，其中 l1、l2 为杆长", rf"x = {LATEX}，\text{{其中}}\theta_1,\theta_2\text{{为关节角}}",
+        f"x = {X}，式中 q1、q2 分别为关节角，l1 = 0.5", r"由几何关系 $x = l_1 c_1 + h$，其中 $h = l_2 c_{12}$",
+        f"x = {X}, dabei ist q1 der Winkel des ersten Gelenks", f"Damit folgt: x = {X}", f"Es gilt x = {X}",
+        rf"x = {LATEX} \quad\text{{mit}}\quad l_1 = 0.5\,\text{{m}}", f"x = {X}, wobei l1 die Länge des ersten Glieds ist",
+        f"x = {X}, where q1 and q2 are the joint angles", f"x = {X} where l1, l2 are the link lengths",
+        f"x = {X} where c12 denotes cos(q1+q2)", f"x = {X} with c1 = cos(q1) etc.",
+        f"The x coordinate of the tool is x = {X}", f"Therefore x = {X}", f"Answer: x = {X}", f"x: {X}",
+        "x = l1*c1 + h, where q1 is the joint angle and h = l2*c12",
+    ],
+)  # fmt: skip
+def test_words_around_a_formula_are_left_out(text):
+    right("planar2r", "x", text)
+
+
+@pytest.mark.parametrize(
+    ("entry", "text"),
+    [
+        ("g2", f"关节2力矩：g2 = {G2}"), ("g2", f"重力项 g2 = {G2}"), ("g2", f"Gravity torque: g_2 = {G2}"),
+        ("V", f"Potential energy V = {V}"), ("V", f"势能 V = {V}"), ("V", f"Potentielle Energie: V = {V}"),
+        ("T", r"动能 T = \frac12 m_1 l_1^2\omega_1^2 + \frac12 m_2[l_1^2\omega_1^2 + l_2^2(\omega_1+\omega_2)^2"
+              r" + 2l_1l_2\omega_1(\omega_1+\omega_2)\cos q_2]，其中 \omega_1=\dot q_1, \omega_2=\dot q_2"),
+    ],
+)  # fmt: skip
+def test_words_in_front_of_other_entries(entry, text):
+    right("planar2r", entry, text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"x = {X}, where q2 is the angle of the second link", f"x = {X}, where q1 is measured from the vertical",
+        f"x = {X}，其中 q1 为与竖直方向的夹角", f"x = {X}, where l1 is the distance to the centre of mass",
+        f"x = {X}, wobei q1 der Winkel zur Senkrechten ist", f"x = {X}, where q1 is in degrees", f"x = {X}，q1为角",
+    ],
+)  # fmt: skip
+def test_words_that_may_change_a_meaning_are_refused(text):
+    refused("planar2r", "x", text)
+
+
+def test_the_refused_words_are_said_with_the_remedy():
+    text = f"x = {X}, where q1 is measured from the vertical"
+    refused("planar2r", "x", text, r"measured from the vertical.*name = formula")
+
+
+# -------- Code
+
+PYTHON = "l1*np.cos(q[0]) + l2*np.cos(q[0]+q[1])"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"lambda q: {PYTHON}", f"x = lambda q: {PYTHON}", f"lambda q1, q2: {X}", f"def x(q):\n    return {PYTHON}",
+        "def x(q):\n    c1 = np.cos(q[0])\n    c12 = np.cos(q[0]+q[1])\n    return l1*c1 + l2*c12",
+        "import numpy as np\ndef x(self, q):\n    return self.l1*np.cos(q[0]) + self.l2*np.cos(q[0]+q[1])",
+        f"c1, c12 = np.cos(q[0]), np.cos(q[0]+q[1])\nx = {X}", "x, y = l1*c1 + l2*c12, l1*s1 + l2*s12",
+        "x = self.l1*np.cos(q[0]) + self.l2*np.cos(q[0]+q[1])", "p.l1*cos(q1) + p.l2*cos(q1+q2)",
+        f"x = {X} // tool", f"x = {X}; // x of the tool", f"x = {X} /* tool */", f"(* tool *) x = {X}",
+        f"```python\nx = {PYTHON}\n```", f"```\n{X}\n```", f"`x = {X}`", f"(1) x = {X}", f"(3.7) x = {X}", f"1. x = {X}",
+        "x == l1 Cos[θ1] + l2 Cos[θ1 + θ2]", "l1*cosf(q1) + l2*cosf(q1+q2)", "l1*std::cos(q[0]) + l2*std::cos(q[0]+q[1])",
+        "x = 0,5*cos(q1) + 0,4*cos(q1+q2)", "l1cos(q1) + l2cos(q1+q2)", "dot([l1, l2], [cos(q1), cos(q1+q2)])",
+        "np.dot([l1, l2], [c1, c12])", "sum([l1*cos(q1), l2*cos(q1+q2)])", "x = [l1 + l2*c2]*c1 - l2*s2*s1",
+        "x = lambda*c1 + l2*c12, lambda = 0.5", "λ = 0.5; x = λ*c1 + l2*c12",
+    ],
+)  # fmt: skip
+def test_what_programs_have_around_a_formula(text):
+    right("planar2r", "x", text)
+
+
+def test_lists_of_other_languages_and_norms():
+    right("planar2r", "g", "{(m1+m2) g l1 Cos[q1] + m2 g l2 Cos[q1+q2], m2 g l2 Cos[q1+q2]}")
+    right("planar2r", "M11", "m1*l1^2 + m2*norm([l1+l2*c2; l2*s2])^2")
+    assert not kl.diagnose("planar2r", "x", "atan2(1,2)*c1").agrees  # two arguments
+    right("planar2r", "C12", "C(1,2) = -m2*l1*l2*sin(q(2))*(qd(1)+qd(2))")
+    given = {"robot": "planar2r", "symbols": {"lambda": 0.5}, "x": "lambda*c1 + l2*c12"}
+    assert formula_file(given, "f.toml").texts["x"] == "lam*c1 + l2*c12"
+
+
+@pytest.mark.parametrize(
+    ("entry", "text"),
+    [
+        ("x", "l1.c1 + l2.c12"), ("x", "p.l1*c1 + self.l1*c12"), ("x", f"{X} // l2"), ("x", f"{X}//2"),
+        ("g", "17,1675*c1, 5,886*c12"), ("x", "0,5*c1 + 0.4*c12"), ("x", "dot([l1], [c1, c12])"),
+        ("x", "lambda w: 0.5*cos(w[0])"), ("x", "l1*c(1) + l2*c(12)"), ("x", "a, b = l1*c1"), ("x", "l1*sin2 q1"), ("x", "l1*c1 + h，高度 h = l2*c12 + 末端"),
+    ],
+)  # fmt: skip
+def test_code_that_may_mean_something_else_is_refused(entry, text):
+    refused("planar2r", entry, text)
+
+
+# -------- Letters
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "x = l₁ cos\u2061(θ₁) + l₂ cos\u2061(θ₁+θ₂)", "𝑥 = 𝑙_1 cos\u2061(𝜃_1) + 𝑙_2 cos\u2061(𝜃_1 + 𝜃_2)",
+        "x=l_1 cos\u2061〖θ_1〗+l_2 cos\u2061(θ_1+θ_2)", "x = l1∙cosθ1 + l2∙cos(θ1+θ2)", "x = l1∗cos(θ1)+l2∗cos(θ1+θ2)",
+        "x = l<sub>1</sub> cos θ<sub>1</sub> + l<sub>2</sub> cos(θ<sub>1</sub>+θ<sub>2</sub>)", "x = ½ c1 + ⅖ c12",
+        "x = l1\u00a0c1 + l2\u2009c12",
+    ],
+)  # fmt: skip
+def test_letters_of_word_processors(text):
+    right("planar2r", "x", text)
+
+
+def test_fractions_and_brackets_of_unicode():
+    right("planar2r_rods", "M22", "⅓ m2 l2²")
+    right("planar2r", "M22", "m2 l<sub>2</sub><sup>2</sup>")
+    tau1 = (
+        "τ₁ = [(m₁+m₂)l₁² + m₂l₂² + 2m₂l₁l₂cosθ₂]θ̈₁ + (m₂l₂² + m₂l₁l₂cosθ₂)θ̈₂ "
+        "− m₂l₁l₂sinθ₂(2θ̇₁θ̇₂ + θ̇₂²) + (m₁+m₂)gl₁cosθ₁ + m₂gl₂cos(θ₁+θ₂)"
+    )
+    right("planar2r", "tau1", tau1)
+
+
+@pytest.mark.parametrize("text", ["2⅓ m2 l2²", "1½*m2", "1 ½ m2", "m2 ⚙ l2"])
+def test_a_number_before_a_fraction_is_refused(text):
+    refused("planar2r_rods", "M22", text)
+
+
+# -------- A free constant, names, rates
+
+
+@pytest.mark.parametrize(
+    "constant",
+    ["const", "const.", "C", "C_0", "V0", "V_0", r"\text{const.}", r"\mathrm{const}", "常数"],
+)
+def test_a_potential_s_constant_is_zero_and_that_is_said(constant):
+    text = rf"V = (m_1+m_2) g l_1 s_1 + m_2 g l_2 s_{{12}} + {constant}"
+    remarks = right("planar2r", "V", text).remarks
+    assert len(remarks) == 1 and "zero is free" in remarks[0]
+    assert kl.diagnose("planar2r", "V", f"{V.replace('s12', 'c12')} + {constant}").known
+
+
+@pytest.mark.parametrize(
+    ("entry", "text"),
+    [
+        ("T", "0.4375*qd1^2 + C"), ("V", f"C*{V} + C"), ("V", f"{V} - C*s1"), ("g2", f"{G2} + const"),
+        ("V", f"{V} + h"), ("L", f"-({V}) + K"), ("V", f"{V} + c"), ("V", f"{V} + k*S + C"), ("x", f"{X} + x0"),
+    ],
+)  # fmt: skip
+def test_a_constant_that_is_not_free_is_refused(entry, text):
+    refused("planar2r", entry, text)
+
+
+def test_a_constant_that_is_explained_is_what_it_is():
+    found = kl.diagnose("planar2r", "V", f"{V} + C, C = 2")
+    assert found.agrees and "another zero" in " ".join(found.remarks)
+
+
+@pytest.mark.parametrize("name", ["I_{C_2}", "I_{C2}", "I_{c2}", "I_{G2}", "I_{S_2}"])
+def test_the_inertia_about_the_centre_by_other_names(name):
+    right("planar2r_rods", "M22", rf"m_2 l_{{c2}}^2 + {name}")
+    refused("planar2r_rods", "M22", rf"m_2 l_{{c2}}^2 + {name.replace('2', '3')}")
+    refused("planar2r_rods", "M22", rf"m_2 l_{{c2}}^2 + {name} + I_2")
+
+
+RATES = {
+    "diff(q{k}(t),t,2)": "diff(q{k}(t),t)", "Derivative(q{k},t,t)": "Derivative(q{k},t)",
+    "sp.Derivative(q{k}(t), (t, 2))": "sp.Derivative(q{k}(t), t)", "diff(theta{k}, t, t)": "diff(theta{k}, t)",
+    "q{k}''[t]": "q{k}'[t]", "D[q{k}[t], {{t, 2}}]": "D[q{k}[t], t]", "q{k}.diff(t, 2)": "q{k}.diff(t)",
+    "q{k}pp": "q{k}p", "qpp{k}": "qp{k}", "theta{k}pp": "theta{k}p", "D2q{k}": "Dq{k}", "d²q{k}/dt²": "dq{k}/dt",
+    "d^2q{k}/dt^2": "dq{k}/dt", "ddot_q{k}": "dot_q{k}",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("twice", [one for one in RATES if "dot" not in one])
+def test_rates_by_other_names(twice):
+    once = RATES[twice]
+    text = TAU2.format(a1=twice.format(k=1), a2=twice.format(k=2), v1=once.format(k=1))
+    right("planar2r", "tau2", text)
+
+
+def test_rates_as_fractions_and_beside_angles():
+    dots = [rf"\frac{{d^2\theta_{k}}}{{dt^2}}" for k in (1, 2)]
+    once = r"\left(\frac{\mathrm{d}\theta_1}{\mathrm{d}t}\right)"
+    text = (
+        rf"m_2 l_2^2 ({dots[0]} + {dots[1]}) + m_2 l_1 l_2 c_2 {dots[0]} + m_2 l_1 l_2 s_2 {once}^2"
+        r" + m_2 g l_2 c_{12}"
+    )
+    right("planar2r", "tau2", text)
+    text = (
+        TAU2.format(a1="ddt1", a2="ddt2", v1="dt1")
+        .replace("c2", "cos(t2)")
+        .replace("s2", "sin(t2)")
+    )
+    right("planar2r", "tau2", text.replace("q1+q2", "t1+t2"))
+
+
+@pytest.mark.parametrize(
+    "rates",
+    [
+        ("diff(q1, x)", "diff(q1, t)"),
+        ("diff(q1(t), t, 3)", "q1p"),
+        ("q1ppp", "q1p"),
+        ("ddt1", "dt1"),
+        ("q1pp", "cos(q1p)"),
+    ],
+)
+def test_rates_that_are_none_are_refused(rates):
+    refused("planar2r", "tau2", TAU2.format(a1=rates[0], a2="qdd2", v1=rates[1]))
+
+
+def test_a_name_that_the_writer_explains_stays():
+    text = "q1p = qd1 + qd2; " + TAU2.format(a1="qdd1", a2="qdd2", v1="q1p")
+    assert not kl.diagnose("planar2r", "tau2", f"{text}").agrees
+
+
+# -------- Corrections
+
+
+@pytest.mark.parametrize(
+    ("entry", "text", "correct"),
+    [
+        ("x", r"\boxed{x = l_1 c_1 + l_2 s_{12}}", r"l_1 c_1 + l_2 c_{12}"),
+        ("x", "x = l1*c1 + l2*s12 (in m)", "l1*c1 + l2*c12"), ("x", "x = self.l1*c1 + self.l2*s12", "l1*c1 + l2*c12"),
+        ("x", r"末端的 x 坐标为 $x = l_1 c_1 + l_2 s_{12}$", r"l_1 c_1 + l_2 c_{12}"),
+        ("x", "lambda q: l1*np.cos(q[0]) + l2*np.sin(q[0]+q[1])", "l1*np.cos(q[0]) + l2*np.cos(q[0]+q[1])"),
+        ("V", "V = 17.1675*s1 + 5.886*c12 + const", "17.1675*s1 + 5.886*s12"),
+        ("x", r"l_1 c\theta_1 + l_2 s(\theta_1+\theta_2)", r"l_1 c\theta_1 + l_2 \cos(\theta_1+\theta_2)"),
+        ("x", r"\nicefrac{1}{2}\,s_1 + 0.4 c_{12}", r"\frac{1}{2}\,c_1 + 0.4 c_{12}"),
+    ],
+)  # fmt: skip
+def test_the_corrected_line_is_as_it_was_typed(entry, text, correct):
+    found = kl.diagnose("planar2r", entry, text)
+    assert found.known, str(found)
+    assert f"correct: {entry} = {correct}" in str(found).split("\n  ")
+
+
+def test_long_texts_are_read_soon():
+    for piece in (
+        "x y ",
+        "where a, ",
+        "1 cm ",
+        "其中",
+        "q1(t) ",
+        "{",
+        r"\boxed{",
+        "[a+",
+        "self.",
+        "0,5 ",
+        "m kg ",
+        "(in ",
+    ):
+        text = "l1*c1 + " + piece * (18_000 // len(piece))
+        refused("planar2r", "x", text)
