@@ -308,7 +308,7 @@ def _is_direction(value: Any) -> bool:
         return False
     try:
         numbers = np.abs(np.asarray(value, dtype=float))
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         return False
     some = numbers.ndim > 0 and numbers.size > 1 and (numbers == 0).any()
     return bool(some and np.isin(numbers, (0.0, 1.0)).all())
