@@ -98,8 +98,17 @@ def exact_data(robot: Robot) -> tuple[Robot, tuple[str, ...]] | None:
     return Robot.from_dh(replace(table, links=links)), tuple(said)
 
 
-def gravity_rounded(case: Case, engine: Array, whole: bool = True) -> tuple[str, ...] | None:
-    """Answers with another g that is the robot's rounded: 9.8, or if it may be ``whole``, 10."""
+def gravity_rounded(
+    case: Case, engine: Array, whole: bool = True, any_zero: bool = False
+) -> tuple[str, ...] | None:
+    """Answers with another g that is the robot's rounded: 9.8, or if it may be ``whole``, 10.
+
+    Args:
+        case: with the answers.
+        engine: the engine's.
+        whole: whether g may be a whole number.
+        any_zero: whether a constant more or less is none of what is compared.
+    """
     if case.quantity.domain is not SERIAL:
         return None
     g = np.array(case.robot.model.gravity.linear)
@@ -111,6 +120,8 @@ def gravity_rounded(case: Case, engine: Array, whole: bool = True) -> tuple[str,
     except KinlabError:  # what a URDF of the arm is asked for
         return None
     weight, rest = engine - none, case.hand - none
+    if any_zero:
+        weight, rest = (x - np.mean(x, axis=0) for x in (weight, rest))
     total = float(np.sum(weight * weight))
     if total <= 0:
         return None
