@@ -21,7 +21,7 @@ from kinlab.check.targets import PlannedRow
 from kinlab.check.unread import Unread
 from kinlab.doctor.changes import Mechanism, label_of
 from kinlab.doctor.derived import derivation
-from kinlab.doctor.examine import examine, prepare
+from kinlab.doctor.examine import examine, prepare, real
 from kinlab.doctor.file import as_judged, examine_formulas, require_sound, robot_of, twice
 from kinlab.doctor.linkages.as_right import times
 from kinlab.doctor.linkages.mechanisms import mechanism
@@ -92,7 +92,7 @@ def diagnose(
     stacked = state_by_state(case.quantity.asked(case.robot, function))
     case = replace(
         case,
-        again=lambda states: np.asarray(stacked(None, *states.values())),
+        again=lambda states: real(stacked(None, *states.values())),
         lines=partial(lines, function),
     )
     hand = np.asarray(stacked(None, *case.arguments.values()))

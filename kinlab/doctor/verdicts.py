@@ -45,6 +45,8 @@ _COORDINATES = 6
 """Of a twist."""
 _DIGITS_LEFT = 100.0
 """Units of the last decimal that rounded answers reach at least."""
+_NOTICED = 0.01
+"""Part of a decimal that is seen beside it."""
 ENERGIES = ("potential_energy", "lagrangian", "link_potential_energies")
 
 
@@ -348,6 +350,8 @@ def answers_rounded(case: Case, engine: Array) -> Excuse | None:
         unit = 10.0**-places
         if size < _DIGITS_LEFT * unit:
             continue
+        if TOLERANCES.same_number * size > _NOTICED * unit:
+            return None  # any answer would be as near to so fine a decimal
         off = np.abs(np.round(case.hand / unit) * unit - case.hand)
         if float(np.max(off)) > TOLERANCES.same_number * size:
             continue
