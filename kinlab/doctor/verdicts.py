@@ -433,7 +433,9 @@ def to_digits(case: Case, engine: Array) -> Excuse | None:
 
 def of_digits(error: float) -> Excuse:
     """The excuse of a function that is right to the digits of its constants."""
-    said = _("it agrees to {digits} digits: finite differences, or rounded constants?")
+    said = _(
+        "it agrees to {digits} digits: finite differences, single precision, or rounded numbers?"
+    )
     return Excuse("digits", (said.format(digits=_digits(error)),))
 
 
@@ -515,7 +517,10 @@ def of_coefficients(case: Case, engine: Array) -> Excuse | None:
         largest = max(largest, found[1])
     if not largest:
         return Excuse("rounded", tuple(dict.fromkeys(remarks))) if remarks else None
-    said = _("its coefficients agree to {digits} digits: finite differences, or rounded constants?")
+    said = _(
+        "its coefficients agree to {digits} digits: finite differences, single precision, or "
+        "rounded numbers?"
+    )
     return Excuse(
         "digits" if largest <= TOLERANCES.coefficient_digits else "near",
         (said.format(digits=_digits(largest)), *dict.fromkeys(remarks)),

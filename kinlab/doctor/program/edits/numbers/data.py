@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 from math import pi
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 
@@ -345,7 +345,7 @@ def numbers(trial: Trial, observed: Observed) -> Iterator[NumberPlace]:
     yield from leaves(trial)
 
 
-def is_number(value: Any) -> bool:
+def is_number(value: Any) -> TypeGuard[float]:
     """Whether it is a number that may be another: no infinity, and not what is no number."""
     if not isinstance(value, int | float) or isinstance(value, bool):
         return False
