@@ -417,13 +417,13 @@ def _meant_instead(case: Case) -> str:
     return ""
 
 
-def real(values: Any) -> Any:
+def real(values: Any) -> np.ndarray[Any, Any]:
     """Complex answers without an imaginary part as real ones; others as they are."""
     found = np.asarray(values)
     return found.real if found.dtype.kind == "c" and not found.imag.any() else found
 
 
-def _refusal(values: Any, name: str, quantity: str, engine: Array) -> str:
+def _refusal(values: np.ndarray[Any, Any], name: str, quantity: str, engine: Array) -> str:
     """What is said of answers that are no real numbers."""
     one = values.flat[0] if values.size else None
     if values.dtype.kind != "O" or isinstance(one, int | float | complex):
@@ -437,10 +437,10 @@ def _refusal(values: Any, name: str, quantity: str, engine: Array) -> str:
 
 
 def _read(hand: Any, engine: Array, name: str, quantity: str) -> Array:
-    values = real(hand)
-    if values.dtype.kind not in "iuf":
-        raise OptionError(_refusal(values, name, quantity, engine))
-    values = values.astype(float)
+    found = real(hand)
+    if found.dtype.kind not in "iuf":
+        raise OptionError(_refusal(found, name, quantity, engine))
+    values: Array = found.astype(float)
     if values.shape != engine.shape and values.size == engine.size:
         squeezed = [s for s in values.shape[1:] if s != 1]
         if squeezed == [s for s in engine.shape[1:] if s != 1]:
