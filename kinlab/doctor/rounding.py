@@ -17,6 +17,7 @@ from kinlab.doctor.numbers import rounded_robots
 from kinlab.doctor.text.meanings import CLOSE, RODS, Meanings, exact_angle, stands_for
 from kinlab.doctor.text.written import Literal, Written, literal
 from kinlab.errors import KinlabError
+from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
 from kinlab.host.language import _
@@ -33,6 +34,11 @@ _ROUGH = 0.03
 
 def roundings(case: Case, engine: Array, function: bool) -> Iterator[tuple[str, ...]]:
     """Roundings in the robot's data, or of a function, that account for every state, in words."""
+    if isinstance(case.robot, FiveBar):
+        weighed = gravity_rounded(case, engine) if function else None
+        if weighed is not None:
+            yield weighed
+        return
     if case.quantity.domain is not SERIAL:
         return
     full = exact_data(case.robot)
@@ -109,9 +115,10 @@ def gravity_rounded(
         whole: whether g may be a whole number.
         any_zero: whether a constant more or less is none of what is compared.
     """
-    if case.quantity.domain is not SERIAL:
+    robot: Any = case.robot
+    if case.quantity.domain is not SERIAL and not isinstance(robot, FiveBar):
         return None
-    g = np.array(case.robot.model.gravity.linear)
+    g = np.array(robot.gravity if isinstance(robot, FiveBar) else robot.model.gravity.linear)
     size = float(np.linalg.norm(g))
     if not size or case.hand.shape != engine.shape or not np.isfinite(case.hand).all():
         return None
@@ -138,8 +145,10 @@ def gravity_rounded(
     return (stands_for(f"g = {one.text}", f"{size:.10g}"),)
 
 
-def weightless(robot: Robot) -> Robot:
-    """The robot without gravity."""
+def weightless(robot: Any) -> Any:
+    """The robot, or the five-bar, without gravity."""
+    if isinstance(robot, FiveBar):
+        return replace(robot, gravity=(0.0,) * len(robot.gravity))
     return with_gravity(robot, np.zeros(3))
 
 

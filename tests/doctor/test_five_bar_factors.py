@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import kinlab as kl
+from kinlab.check.quantities.registry import quantity as find_quantity
 
 FACTORS = {
     "minus": lambda arm, x, y: -1.0,
@@ -76,3 +79,17 @@ def test_the_loop_by_a_constant(factor: float) -> None:
     assert kl.diagnose(arm, "fivebar_loop", lambda t, xy: gap(t, xy, 1), samples=40).agrees
     wrong = kl.diagnose(arm, "fivebar_loop", lambda t, xy: gap(t, xy) * (1 + t[0] ** 2), samples=40)
     assert not wrong.agrees
+
+
+@pytest.mark.parametrize("name", ["isotropic", "unequal"])
+@pytest.mark.parametrize("g", [9.8, 9.79, 9.5])
+def test_g_rounded_in_a_torque_is_what_it_is_of_a_text(name: str, g: float) -> None:
+    arm = kl.FiveBar.load(name)
+    other, torque = replace(arm, gravity=(0.0, -g)), find_quantity("fivebar_torque_massless")
+
+    def by_hand(*state):
+        return torque.engine(other, *(np.asarray(x)[None] for x in state))[0]
+
+    found = kl.diagnose(arm, "fivebar_torque_massless", by_hand, samples=40)
+    assert found.agrees == (g == 9.8)
+    assert not found.agrees or found.remarks == ("g = 9.8 stands for 9.81",)
