@@ -423,23 +423,24 @@ def real(values: Any) -> np.ndarray[Any, Any]:
     return found.real if found.dtype.kind == "c" and not found.imag.any() else found
 
 
-def _refusal(values: np.ndarray[Any, Any], name: str, quantity: str, engine: Array) -> str:
-    """What is said of answers that are no real numbers."""
+def _require_real(values: np.ndarray[Any, Any], name: str, quantity: str, engine: Array) -> None:
     one = values.flat[0] if values.size else None
-    if values.dtype.kind != "O" or isinstance(one, int | float | complex):
-        told = f"{name}: answered with dtype {values.dtype}; {quantity!r} is real numbers"
-        return told + ("; give their real part: .real" if values.dtype.kind == "c" else "")
-    shape = " x ".join(map(str, engine.shape[1:])) or "one"
-    return (
-        f"{name}: answered with a {type(one).__name__}; {quantity!r} is an array or a list of "
-        f"{shape} real numbers"
-    )
+    if values.dtype.kind == "O" and not isinstance(one, int | float | complex):
+        shape = " x ".join(map(str, engine.shape[1:])) or 1
+        raise OptionError(
+            f"{name}: answered with a {type(one).__name__}; {quantity!r} is an array or a list of "
+            f"{shape} real numbers"
+        )
+    if values.dtype.kind not in "iuf":
+        raise OptionError(
+            f"{name}: answered with dtype {values.dtype}; {quantity!r} is real numbers"
+            + ("; give their real part: .real" if values.dtype.kind == "c" else "")
+        )
 
 
 def _read(hand: Any, engine: Array, name: str, quantity: str) -> Array:
     found = real(hand)
-    if found.dtype.kind not in "iuf":
-        raise OptionError(_refusal(found, name, quantity, engine))
+    _require_real(found, name, quantity, engine)
     values: Array = found.astype(float)
     if values.shape != engine.shape and values.size == engine.size:
         squeezed = [s for s in values.shape[1:] if s != 1]
