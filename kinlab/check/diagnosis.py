@@ -231,6 +231,8 @@ class Diagnosis(Answer):
         verdict = _("{function}: {verdict} ({quantity} of {robot})").format(
             verdict=_(self.verdict), **self._names
         )
+        if self.agrees and self.form == "unusual":  # the difference is none of an error
+            return Introduction(verdict, tuple(self.remarks), mood="good")
         if self.agrees:
             text = _("{verdict}, largest relative error {error:.2g}").format(
                 verdict=verdict, error=self.error_before

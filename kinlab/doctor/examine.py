@@ -19,6 +19,8 @@ from kinlab.arrays import Array, first_largest, seed_of, whole
 from kinlab.check.compare import relative_errors, rows_alone
 from kinlab.check.diagnosis import Cause, Diagnosis
 from kinlab.check.quantities.registry import quantity as find_quantity
+from kinlab.check.quantities.registry import split_name
+from kinlab.check.quantities.serial import SERIAL
 from kinlab.doctor import verdicts
 from kinlab.doctor.changes import Case, entries
 from kinlab.doctor.confusions.known import readings
@@ -49,7 +51,7 @@ from kinlab.doctor.slips import LIST, RIVALS, reading_and_slips, slips_in
 from kinlab.doctor.solutions.verdict import judged
 from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import Excuse
-from kinlab.errors import OptionError
+from kinlab.errors import KinlabError, OptionError
 from kinlab.host.language import _
 from kinlab.tolerances import TOLERANCES
 
@@ -128,6 +130,9 @@ def _examined(
     if not same and (alone := rows_alone(values.shape, engine.shape, quantity)):
         said = _("to compare these rows alone, ask for {first} (the first) or {last} (the last)")
         partial = (said.format(first=repr(alone[0]), last=repr(alone[1])),)
+    if not same and (other := _meant_instead(case)):
+        said = _("it is right if {quantity} is meant: ask for that")
+        partial = (said.format(quantity=repr(other)),)
     ranked = _ranked(causes)
     right_parts = proved(case, engine, split) if same and not ranked else ()
     off = verdicts.largest_share(case, engine) if same and not written else math.inf
@@ -387,14 +392,56 @@ def _next_to_nothing(values: Array, engine: Array) -> bool:
     return bool(np.max(np.abs(values), initial=0.0) <= size)
 
 
-def _read(hand: Any, engine: Array, name: str, quantity: str) -> Array:
-    values = np.asarray(hand)
+_PARTS_OF = {
+    "jacobian": ("planar_jacobian", "planar_jacobian[:2]", "jacobian[:3]", "jacobian[3:]"),
+    "planar_jacobian": ("planar_jacobian[:2]", "jacobian", "jacobian[:3]"),
+    "fk": ("fk[:3]", "fk[:3,3]", "fk[:3,:3]", "fk[:2,3]"),
+    "planar_pose": ("fk", "fk[:3,3]", "fk[:2,3]"),
+}
+"""Quantities, or parts of them, that are handed in for others."""
+
+
+def _meant_instead(case: Case) -> str:
+    """The quantity that answers of another shape are; empty where they are none that is known."""
+    if case.index or case.quantity.domain is not SERIAL:
+        return ""
+    for name in _PARTS_OF.get(case.quantity.name, ()):
+        plain, index = split_name(name)
+        try:
+            there = replace(case, quantity=find_quantity(plain), index=index).answer(())
+        except KinlabError:  # none of this arm: it is not planar
+            continue
+        same = there.shape == case.hand.shape
+        if same and np.max(relative_errors(case.hand, there)) <= TOLERANCES.formula_agrees:
+            return name
+    return ""
+
+
+def real(values: Any) -> np.ndarray[Any, Any]:
+    """Complex answers without an imaginary part as real ones; others as they are."""
+    found = np.asarray(values)
+    return found.real if found.dtype.kind == "c" and not found.imag.any() else found
+
+
+def _require_real(values: np.ndarray[Any, Any], name: str, quantity: str, engine: Array) -> None:
+    one = values.flat[0] if values.size else None
+    if values.dtype.kind == "O" and not isinstance(one, int | float | complex):
+        shape = " x ".join(map(str, engine.shape[1:])) or 1
+        raise OptionError(
+            f"{name}: answered with a {type(one).__name__}; {quantity!r} is an array or a list of "
+            f"{shape} real numbers"
+        )
     if values.dtype.kind not in "iuf":
         raise OptionError(
             f"{name}: answered with dtype {values.dtype}; {quantity!r} is real numbers"
             + ("; give their real part: .real" if values.dtype.kind == "c" else "")
         )
-    values = values.astype(float)
+
+
+def _read(hand: Any, engine: Array, name: str, quantity: str) -> Array:
+    found = real(hand)
+    _require_real(found, name, quantity, engine)
+    values: Array = found.astype(float)
     if values.shape != engine.shape and values.size == engine.size:
         squeezed = [s for s in values.shape[1:] if s != 1]
         if squeezed == [s for s in engine.shape[1:] if s != 1]:

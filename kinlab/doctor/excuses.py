@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -15,7 +15,7 @@ from kinlab.doctor import rounding, verdicts
 from kinlab.doctor.changes import AnswerEntry, Arguments, Case, entries, table_of
 from kinlab.doctor.confusions.centres import as_there, centres_elsewhere
 from kinlab.doctor.derivations.words import together
-from kinlab.doctor.derived import derivation_of
+from kinlab.doctor.derived import Derivation, derivation_of, searchable
 from kinlab.doctor.entries.terms import Slip
 from kinlab.doctor.linkages.looked_up import reference_of
 from kinlab.doctor.slips import of_entry, slip_cause
@@ -25,13 +25,15 @@ from kinlab.doctor.text.stand_ins import bare_number, rounding_remarks, stand_in
 from kinlab.doctor.text.written import Together, Written
 from kinlab.doctor.verdicts import Excuse
 from kinlab.errors import KinlabError, already_said
-from kinlab.formulas.tree import names
+from kinlab.formulas.tree import Node, evaluate, names
 from kinlab.host.language import _
 from kinlab.model.dh import DHTable
 from kinlab.model.robot import Robot
 from kinlab.symbolic.vocabulary import vocabulary
 from kinlab.tolerances import TOLERANCES
 
+_ELSEWHERE = 10
+"""Seed of the numbers at which names are moved."""
 _WHOLE_TERMS = {"extra term", "missing term"}
 
 
@@ -71,7 +73,8 @@ def excused(case: Case, engine: Array, written: dict[str, Written]) -> tuple[Cas
     if right and remarks:
         found = Excuse("rounded", tuple(dict.fromkeys(remarks)))
         return case, _with_numbers(found, case, engine, written)
-    odd = None if right else _unusual_and_rounded(case, engine, written)
+    odd = None if right else verdicts.weighed_otherwise(case, engine)
+    odd = odd or (None if right else _unusual_and_rounded(case, engine, written))
     if odd is not None:
         return case, _with_numbers(odd, case, engine, written)
     if not right and (weighed := rounding.gravity_rounded(case, engine, False)) is not None:
@@ -133,12 +136,57 @@ def _with_numbers(found: Excuse, case: Case, engine: Array, written: dict[str, W
     if derived is None:
         return found
     right: set[str] = set()
-    for entry in entries(replace(case, hand=engine), engine):
-        poly = derived.entry(entry.index)
-        right |= verdicts.unnamed(written.get(entry.label), derived, poly)
+    if found.form == "unusual" and isinstance(derived, Derivation) and verdicts.any_other(case):
+        right = _held_in_essence(case, engine, derived, written)
+    else:
+        for entry in entries(replace(case, hand=engine), engine):
+            poly = derived.entry(entry.index)
+            right |= verdicts.unnamed(written.get(entry.label), derived, poly)
     own = (f"{name} = {derived.values[name]:.7g}" for name in sorted(right))
-    only = [one for one in own if not any(one in remark for remark in found.remarks)]
+    only = [one for one in own if not any(_tells(remark, one) for remark in found.remarks)]
     return replace(found, remarks=(*found.remarks, *only_for(only)))
+
+
+def _tells(remark: str, one: str) -> bool:
+    """Whether a remark has a number, or says what the writer has in its place: g = 9.8."""
+    return one in remark or remark.startswith(one.partition(" = ")[0] + " = ")
+
+
+def _held_in_essence(
+    case: Case, engine: Array, derived: Derivation, written: dict[str, Written]
+) -> set[str]:
+    """Names that texts lack on which what is the same of all valid formulas depends.
+
+    Of a potential that is what it changes by, of a C a row of C qd: a name in a constant, or in
+    one entry of a row whose others have it, is none of them.
+    """
+    at = derived.another(_ELSEWHERE)
+    energies = case.quantity.name in verdicts.ENERGIES
+    rows: dict[tuple[int, ...], list[tuple[Node, AnswerEntry]]] = {}
+    named: dict[tuple[int, ...], set[str]] = {}
+    for entry in entries(replace(case, hand=engine), engine):
+        poly, text = derived.entry(entry.index), written.get(entry.label)
+        if not searchable(poly) or text is None:
+            return set()
+        row = entry.index if energies else entry.index[:-1]
+        rows.setdefault(row, []).append((derived.tree(poly), entry))
+        named.setdefault(row, set()).update(names(text.node))
+    found: set[str] = set()
+    for row, parts in rows.items():
+
+        def essence(there: Mapping[str, Array], parts: list[Any] = parts) -> Array:
+            values = [np.asarray(evaluate(one, dict(there))) for one, _entry in parts]
+            if energies:
+                return np.asarray(values[0] - np.mean(values[0]))
+            rates = [there[f"qd{entry.index[-1] + 1}"] for _one, entry in parts]
+            return np.asarray(sum(x * rate for x, rate in zip(values, rates, strict=True)))
+
+        here = essence(at)
+        size = TOLERANCES.formula_agrees * float(np.max(np.abs(here), initial=0.0))
+        for name in set[str]().union(*(names(one) for one, _entry in parts)) - named[row]:
+            moved = essence(derived.but_for(name, at)) if name in derived.parameters else here
+            found |= {name} if np.max(np.abs(moved - here)) > size else set()
+    return found
 
 
 def only_for(numbers: Sequence[str]) -> list[str]:

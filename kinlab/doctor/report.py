@@ -21,8 +21,9 @@ from kinlab.check.targets import PlannedRow
 from kinlab.check.unread import Unread
 from kinlab.doctor.changes import Mechanism, label_of
 from kinlab.doctor.derived import derivation
-from kinlab.doctor.examine import examine, prepare
+from kinlab.doctor.examine import examine, prepare, real
 from kinlab.doctor.file import as_judged, examine_formulas, require_sound, robot_of, twice
+from kinlab.doctor.linkages.as_right import times
 from kinlab.doctor.linkages.mechanisms import mechanism
 from kinlab.doctor.program.elsewhere import lines_elsewhere
 from kinlab.doctor.program.words import lines
@@ -82,11 +83,16 @@ def diagnose(
     stacked = state_by_state(case.quantity.asked(case.robot, function))
     case = replace(
         case,
-        again=lambda states: np.asarray(stacked(None, *states.values())),
+        again=lambda states: real(stacked(None, *states.values())),
         lines=partial(lines, function),
     )
     hand = np.asarray(stacked(None, *case.arguments.values()))
-    return examine(case, hand, engine, quantity, function_name(function), {})
+    name = function_name(function)
+    same = times(case, hand, engine) if isinstance(case.robot, FiveBar) else None
+    if same is None:
+        return examine(case, hand, engine, quantity, name, {})
+    found = examine(case, same[0], engine, quantity, name, {})
+    return replace(found, form="unusual", remarks=(*found.remarks, same[1]))
 
 
 def _of_all(wrong: list[Diagnosis]) -> Diagnosis:

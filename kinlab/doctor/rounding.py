@@ -17,6 +17,7 @@ from kinlab.doctor.numbers import rounded_robots
 from kinlab.doctor.text.meanings import CLOSE, RODS, Meanings, exact_angle, stands_for
 from kinlab.doctor.text.written import Literal, Written, literal
 from kinlab.errors import KinlabError
+from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
 from kinlab.host.language import _
@@ -33,6 +34,11 @@ _ROUGH = 0.03
 
 def roundings(case: Case, engine: Array, function: bool) -> Iterator[tuple[str, ...]]:
     """Roundings in the robot's data, or of a function, that account for every state, in words."""
+    if isinstance(case.robot, FiveBar):
+        weighed = gravity_rounded(case, engine) if function else None
+        if weighed is not None:
+            yield weighed
+        return
     if case.quantity.domain is not SERIAL:
         return
     full = exact_data(case.robot)
@@ -98,11 +104,21 @@ def exact_data(robot: Robot) -> tuple[Robot, tuple[str, ...]] | None:
     return Robot.from_dh(replace(table, links=links)), tuple(said)
 
 
-def gravity_rounded(case: Case, engine: Array, whole: bool = True) -> tuple[str, ...] | None:
-    """Answers with another g that is the robot's rounded: 9.8, or if it may be ``whole``, 10."""
-    if case.quantity.domain is not SERIAL:
+def gravity_rounded(
+    case: Case, engine: Array, whole: bool = True, any_zero: bool = False
+) -> tuple[str, ...] | None:
+    """Answers with another g that is the robot's rounded: 9.8, or if it may be ``whole``, 10.
+
+    Args:
+        case: with the answers.
+        engine: the engine's.
+        whole: whether g may be a whole number.
+        any_zero: whether a constant more or less is none of what is compared.
+    """
+    robot: Any = case.robot
+    if case.quantity.domain is not SERIAL and not isinstance(robot, FiveBar):
         return None
-    g = np.array(case.robot.model.gravity.linear)
+    g = np.array(robot.gravity if isinstance(robot, FiveBar) else robot.model.gravity.linear)
     size = float(np.linalg.norm(g))
     if not size or case.hand.shape != engine.shape or not np.isfinite(case.hand).all():
         return None
@@ -111,6 +127,8 @@ def gravity_rounded(case: Case, engine: Array, whole: bool = True) -> tuple[str,
     except KinlabError:  # what a URDF of the arm is asked for
         return None
     weight, rest = engine - none, case.hand - none
+    if any_zero:
+        weight, rest = (x - np.mean(x, axis=0) for x in (weight, rest))
     total = float(np.sum(weight * weight))
     if total <= 0:
         return None
@@ -127,8 +145,10 @@ def gravity_rounded(case: Case, engine: Array, whole: bool = True) -> tuple[str,
     return (stands_for(f"g = {one.text}", f"{size:.10g}"),)
 
 
-def weightless(robot: Robot) -> Robot:
-    """The robot without gravity."""
+def weightless(robot: Any) -> Any:
+    """The robot, or the five-bar, without gravity."""
+    if isinstance(robot, FiveBar):
+        return replace(robot, gravity=(0.0,) * len(robot.gravity))
     return with_gravity(robot, np.zeros(3))
 
 

@@ -23,6 +23,7 @@ from kinlab.doctor.rounding import (
     coefficients,
     coefficients_rounded,
     data_rounded,
+    gravity_rounded,
     same_values,
 )
 from kinlab.doctor.text.stand_ins import FITS, FREE, Numbered, fitted, rounding_remarks, stand_ins
@@ -44,6 +45,8 @@ _COORDINATES = 6
 """Of a twist."""
 _DIGITS_LEFT = 100.0
 """Units of the last decimal that rounded answers reach at least."""
+_NOTICED = 0.01
+"""Part of a decimal that is seen beside it."""
 ENERGIES = ("potential_energy", "lagrangian", "link_potential_energies")
 
 
@@ -184,8 +187,9 @@ def other_form(case: Case, engine: Array, slack: float) -> str:
         slack: relative error of what is essential in them.
     """
     if case.quantity.name in ENERGIES:
-        middle = np.ravel(np.median(case.hand - engine, axis=0))
-        size = float(middle[np.argmax(np.abs(middle))])
+        size = _between_zeros(case, engine)
+        if size is None:
+            return _("the potential has another zero, which changes no torque")
         said = _(
             "the potential has another zero (the difference is {size:.6g} J everywhere), "
             "which changes no torque"
@@ -201,6 +205,39 @@ def other_form(case: Case, engine: Array, slack: float) -> str:
             "C*qd is right, but C is not Christoffel's: Mdot - 2C is skew-symmetric all the same"
         )
     return _("C*qd is right, but C is not Christoffel's: Mdot - 2C is not skew-symmetric")
+
+
+def _between_zeros(case: Case, engine: Array) -> float | None:
+    """The constant by which a potential differs, by the writer's own numbers; None of no single."""
+    off = case.hand - engine
+    if off.ndim > 1:
+        middle = np.ravel(np.median(off, axis=0))
+        return float(middle[np.argmax(np.abs(middle))])
+    size = float(np.max(np.abs(engine)))
+    if np.ptp(off) <= TOLERANCES.finite_differences * size:
+        return float(np.median(off))
+    derived = derivation_of(case)
+    poly = None if derived is None else derived.entry(case.index)
+    if derived is None or not searchable(poly):
+        return None
+    words = joint_functions([derived.tree(poly)], names_for(derived, case.quantity.arguments))
+    at = numbers_at(case)
+    columns = [np.broadcast_to(tree.evaluate(word, at), off.shape) for word in words]
+    columns = [np.ones(off.shape), *(one for one in columns if np.ptp(one) > 0)]
+    matrix = np.array(columns).T
+    shares, *_rest = np.linalg.lstsq(matrix, off, rcond=None)
+    fits = np.max(np.abs(matrix @ shares - off)) <= TOLERANCES.formula_agrees * size
+    return float(shares[0]) if fits else None
+
+
+def weighed_otherwise(case: Case, engine: Array) -> Excuse | None:
+    """A potential or a Lagrangian that is worked out with g rounded, of any zero."""
+    if case.quantity.name not in ENERGIES:
+        return None
+    if (said := gravity_rounded(case, engine, whole=False)) is not None:
+        return Excuse("rounded", said)
+    said = gravity_rounded(case, engine, whole=False, any_zero=True)
+    return Excuse("unusual", (other_form(case, engine, 0.0), *said)) if said else None
 
 
 # -------- The same asked of one entry of a case
@@ -313,6 +350,8 @@ def answers_rounded(case: Case, engine: Array) -> Excuse | None:
         unit = 10.0**-places
         if size < _DIGITS_LEFT * unit:
             continue
+        if TOLERANCES.same_number * size > _NOTICED * unit:
+            return None  # any answer would be as near to so fine a decimal
         off = np.abs(np.round(case.hand / unit) * unit - case.hand)
         if float(np.max(off)) > TOLERANCES.same_number * size:
             continue
@@ -394,7 +433,9 @@ def to_digits(case: Case, engine: Array) -> Excuse | None:
 
 def of_digits(error: float) -> Excuse:
     """The excuse of a function that is right to the digits of its constants."""
-    said = _("it agrees to {digits} digits: finite differences, or rounded constants?")
+    said = _(
+        "it agrees to {digits} digits: finite differences, single precision, or rounded numbers?"
+    )
     return Excuse("digits", (said.format(digits=_digits(error)),))
 
 
@@ -476,7 +517,10 @@ def of_coefficients(case: Case, engine: Array) -> Excuse | None:
         largest = max(largest, found[1])
     if not largest:
         return Excuse("rounded", tuple(dict.fromkeys(remarks))) if remarks else None
-    said = _("its coefficients agree to {digits} digits: finite differences, or rounded constants?")
+    said = _(
+        "its coefficients agree to {digits} digits: finite differences, single precision, or "
+        "rounded numbers?"
+    )
     return Excuse(
         "digits" if largest <= TOLERANCES.coefficient_digits else "near",
         (said.format(digits=_digits(largest)), *dict.fromkeys(remarks)),
@@ -509,11 +553,15 @@ def by_digits(
     if found is None:
         return None
     meant = replace(case, hand=formula.answers(at, found.numbers))
-    return rounded_otherwise(meant, engine, rounding_remarks(found.changed, at))
+    return rounded_otherwise(meant, engine, rounding_remarks(found.changed, at), own=case)
 
 
 def rounded_otherwise(
-    meant: Case, engine: Array, rounded: Iterable[str], slack: float = 0.0
+    meant: Case,
+    engine: Array,
+    rounded: Iterable[str],
+    slack: float = 0.0,
+    own: Case | None = None,
 ) -> Excuse | None:
     """The excuse of rounded numbers, if what they stand for is right, or another valid form.
 
@@ -522,10 +570,13 @@ def rounded_otherwise(
         engine: the engine's answers.
         rounded: what the numbers stand for, in words.
         slack: relative error that finite differences may leave.
+        own: the answers with the writer's own numbers.
     """
     if np.max(relative_errors(meant.hand, engine)) <= max(TOLERANCES.formula_agrees, slack):
         return Excuse("rounded", tuple(rounded))
     odd = unusual(meant, engine, slack)
+    if odd is not None and own is not None and own.quantity.name in ENERGIES:
+        odd = replace(odd, remarks=(other_form(own, engine, slack),))
     return odd and replace(odd, remarks=(*odd.remarks, *rounded))
 
 

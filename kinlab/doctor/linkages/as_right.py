@@ -40,6 +40,8 @@ _FACTORS = {
 """What an equation may be multiplied by, the likeliest first: a number, and a power of l1."""
 _SIDES = {"1": (1.0, 0), "-1": (-1.0, 0)}
 """The same of the loop's equation, by the side on which it stands."""
+_LEG = 3
+"""Numbers of a leg's equation: A, B and C."""
 _HALF = 2
 """Of an angle as twice another, whose cosine is below zero where A + C is."""
 _TRIED = 4
@@ -118,6 +120,47 @@ def judged_kindly(case: Case, hand: Array, text: Written, factor: str, judge: Ju
             best = found
     assert best is not None
     return best
+
+
+def times(case: Case, hand: Array, engine: Array) -> tuple[Array, str] | None:
+    """A function's equation without the factor on both of its sides, and what is told of it.
+
+    A, B and C of a leg may share any factor, another one at each state; of the loop's equation,
+    which is one number, it must be the same at all of them.
+
+    Args:
+        case: with the states.
+        hand: the function's answers.
+        engine: the engine's.
+    """
+    name = case.quantity.name
+    known = hand.shape == engine.shape and hand.dtype.kind in "iuf" and np.isfinite(hand).all()
+    if not known or not name.endswith(("_equation", "_loop")):
+        return None
+    if name.endswith("_equation"):
+        axis: Any = -1
+        if engine.ndim == 1 or engine.shape[-1] != _LEG:
+            return None  # A alone may be any number times another
+        told = _(
+            "the equation is multiplied by a factor that A, B and C of a leg share: it is the same "
+            "equation"
+        )
+    else:
+        axis = 0
+        told = _("the equation is multiplied by a constant: it is the same equation")
+        lengths = np.asarray(_lengths(case).answer(()), dtype=float)
+        if np.max(relative_errors(hand, lengths)) <= TOLERANCES.formula_agrees:
+            return engine, _("the equation is one of lengths: it is the same equation")
+    size = np.sum(engine * engine, axis=axis, keepdims=True)
+    factor = np.sum(hand * engine, axis=axis, keepdims=True) / size
+    least, most = float(np.min(np.abs(factor))), float(np.max(np.abs(factor)))
+    if not least > TOLERANCES.formula_agrees * most:
+        return None
+    same = np.asarray(hand / factor)
+    if np.max(relative_errors(same, engine)) > TOLERANCES.formula_agrees:
+        return None
+    plain = np.max(np.abs(factor - 1.0)) <= TOLERANCES.formula_agrees
+    return None if plain else (same, told)
 
 
 def _slips(found: Diagnosis) -> float:

@@ -206,7 +206,9 @@ def _if_meant(
         more = _("{count} more numbers are rounded, too").format(count=len(told) - _TOLD)
         told = [*told[:_TOLD], more]
     slack = TOLERANCES.finite_differences if search.asked.differences else 0.0
-    return rounded_otherwise(replace(search.case, hand=answers), search.asked.wanted, told, slack)
+    return rounded_otherwise(
+        replace(search.case, hand=answers), search.asked.wanted, told, slack, search.case
+    )
 
 
 def _is_rounded(one: Literal, exact: float) -> bool:
@@ -301,7 +303,7 @@ def _laid(own: _Numbers) -> Excuse | None:
         if np.max(np.abs(now - target.ravel()) / scale) <= TOLERANCES.formula_agrees:
             told = _told(own.literals, numbers_.tolist(), matrix)
             meant = replace(case, hand=own.answers({}, numbers_))
-            return rounded_otherwise(meant, wanted, told) if told else None
+            return rounded_otherwise(meant, wanted, told, own=case) if told else None
     return None
 
 

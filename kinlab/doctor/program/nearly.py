@@ -65,8 +65,8 @@ def _error_with(search: LineSearch, some: Sequence[NumberPlace], count: int) -> 
 
 def _told(some: Sequence[NumberPlace], before: float, after: float) -> str:
     said = _(
-        "it agrees to {digits} digits, up to {numbers}, where it stops, or with which it damps or "
-        "takes differences: with a thousandth of that no more than {after:.0e} is off"
+        "it agrees to {digits} digits; what is off is that of {numbers} in the program: with a "
+        "thousandth of that the error is {after:.0e}"
     )
     typed = dict.fromkeys(f"{abs(float(place.value)):g}" for place in some)
     digits = max(1, math.floor(-math.log10(2 * before)))

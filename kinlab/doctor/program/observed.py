@@ -173,9 +173,7 @@ def _calls(trial: Trial, states: Sequence[tuple[Any, ...]]) -> list[int]:
 def _numbers(value: Any) -> Array | None:
     if isinstance(value, bool | str) or value is None:
         return None
-    if isinstance(value, int | float | complex | np.number):
-        return np.asarray(value)
-    if isinstance(value, list | tuple):
+    if isinstance(value, int | float | complex | np.number | list | tuple):
         try:
             value = np.asarray(value)
         except ValueError:

@@ -267,7 +267,14 @@ def _counted(found: Solutions) -> Iterator[str]:
     for k in range(found.q.shape[1]):
         right = int(found.right[:, k].sum())
         said = _("solution {number}: right at {right} of {count} targets")
-        yield said.format(number=k + 1, right=right, count=count)
+        told = said.format(number=k + 1, right=right, count=count)
+        wrong: Any = found.wrong[:, k]
+        nearly = found.given[:, k].all() and wrong.any()
+        furthest = float(np.max(found.errors[wrong, k])) if nearly else np.inf
+        if furthest <= TOLERANCES.nearly_agrees:  # an iteration stops somewhere
+            near = _("at the others the tool is within {error:.1e} of the target, relative")
+            told = _("; ").join((told, near.format(error=furthest)))
+        yield told
 
 
 def _causes(found: Solutions, engine: Array) -> list[Cause]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 import math
+import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -242,6 +243,8 @@ def own_numbers(robot: Any) -> Array:
 
 def is_own(robot: Any, value: float) -> bool:
     """Whether the robot has a number, with its sign."""
+    if not abs(value) <= sys.float_info.max:  # NaN is never less
+        return False
     return bool(np.isclose(own_numbers(robot), value, rtol=TOLERANCES.same_number, atol=0).any())
 
 
@@ -308,7 +311,7 @@ def _is_direction(value: Any) -> bool:
         return False
     try:
         numbers = np.abs(np.asarray(value, dtype=float))
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         return False
     some = numbers.ndim > 0 and numbers.size > 1 and (numbers == 0).any()
     return bool(some and np.isin(numbers, (0.0, 1.0)).all())

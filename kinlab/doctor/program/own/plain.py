@@ -243,6 +243,8 @@ def alike(one: Any, other: Any, depth: int = 6) -> bool:
     if isinstance(one, int | float | complex | np.ndarray | np.number):
         try:
             close = np.allclose(one, other, rtol=1e-12, atol=0.0, equal_nan=True)
+        except OverflowError:  # a whole number beyond any float
+            return bool(one == other)
         except (TypeError, ValueError):
             return False
         return bool(close) and np.shape(one) == np.shape(other)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import ast
+import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 from math import pi
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 
@@ -111,7 +112,7 @@ def _whole_entries(trial: Trial) -> Iterator[NumberPlace]:
 
 def _names_exchanged(trial: Trial) -> Iterator[ProgramEdit]:
     """Two names that were given each other's numbers: ``m2, l2 = 0.4, 1.5``."""
-    plain = [n for n in trial.program.data if type(trial.space[n]) in (int, float)]
+    plain = [n for n in trial.program.data if is_number(trial.space[n])]
     for one, other in combinations(plain[:_NAMES], 2):
         first, last = trial.space[one], trial.space[other]
         if first != last:
@@ -268,7 +269,7 @@ def _row(row: Any) -> str:
 
 
 def _is_plain(value: Any) -> bool:
-    return isinstance(value, int | float | np.number) and not isinstance(value, bool)
+    return isinstance(value, np.number) or is_number(value)
 
 
 def _whole(value: Any) -> Iterator[tuple[Any, str]]:
@@ -281,7 +282,7 @@ def _whole(value: Any) -> Iterator[tuple[Any, str]]:
             yield value.T, "transposed"
             if np.array_equal(value, value.T) and value.any():
                 yield 2 * np.diag(np.diagonal(value)) - value, "products' signs"
-    elif isinstance(value, list | tuple) and all(type(one) in (int, float) for one in value):
+    elif isinstance(value, list | tuple) and all(map(is_number, value)):
         yield made_like(value, [one * pi / 180 for one in value]), "degrees"
 
 
@@ -339,9 +340,16 @@ def numbers(trial: Trial, observed: Observed) -> Iterator[NumberPlace]:
             counts = type(node.value) is int and (
                 isinstance(here.parent, ast.BinOp) or measured(here.parent)
             )
-            if isinstance(node.value, int | float) and (counts or isinstance(node.value, float)):
+            if is_number(node.value) and (counts or isinstance(node.value, float)):
                 yield NumberPlace(node.value, part, node, "value", node)
     yield from leaves(trial)
+
+
+def is_number(value: Any) -> TypeGuard[float]:
+    """Whether it is a number that may be another: no infinity, and not what is no number."""
+    if not isinstance(value, int | float) or isinstance(value, bool):
+        return False
+    return abs(value) <= sys.float_info.max  # a whole number may be greater; NaN is never less
 
 
 def measured(holder: ast.AST) -> bool:
@@ -380,7 +388,7 @@ def leaves_of(trial: Trial, name: str) -> Iterator[NumberPlace]:
 def _within(
     holder: Any, key: Any, value: Any, name: str, place: tuple[Any, ...], inner: tuple[int, ...]
 ) -> Iterator[NumberPlace]:
-    if isinstance(value, float | int) and not isinstance(value, bool):
+    if is_number(value):
         yield NumberPlace(value, DATA, holder, key, name, place, inner)
     elif isinstance(value, tuple):
         for k, one in enumerate(value):
@@ -400,8 +408,9 @@ def _below(value: Any, name: str, place: tuple[Any, ...]) -> Iterator[NumberPlac
     elif isinstance(value, np.ndarray):
         if value.dtype.kind == "f" and value.size <= _TABLE and value.flags.writeable:
             for index in np.ndindex(value.shape):
-                entry = (*place, *index)
-                yield NumberPlace(float(value[index]), DATA, value, index, name, entry)
+                if np.isfinite(value[index]):
+                    entry = (*place, *index)
+                    yield NumberPlace(float(value[index]), DATA, value, index, name, entry)
     elif hasattr(value, "__dict__"):
         for k, one in vars(value).items():
             if not k.startswith("__") and not callable(one):

@@ -6,7 +6,7 @@ import ast
 from collections.abc import Iterator
 
 from kinlab.doctor.bytecode.syntax import called
-from kinlab.doctor.program.edits.numbers.data import measured
+from kinlab.doctor.program.edits.numbers.data import is_number, measured
 from kinlab.doctor.program.edits.scope.functions import PI
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.whole import SIZES
@@ -35,7 +35,7 @@ def _angle_beside(here: Here) -> ast.expr | None:
 
 def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
     value = here.node.value
-    if isinstance(value, bool) or not isinstance(value, int | float):
+    if not is_number(value):
         return
     if isinstance(here.parent, ast.Call) and called(here.parent) not in SIZES and value:
         yield here.within(here.node, "value", 0, "number", 1.12)
