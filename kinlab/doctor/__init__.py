@@ -18,6 +18,8 @@ module            what it holds
                   typeset and marked
 ``rounding``      Rounded numbers of a function and of the robot's data, and whether they explain a
                   difference
+``shapes``        Matrices of fewer rows than the engine's: a planar arm's 3 x 3 pose, a SCARA's
+                  4 x 4 Jacobian
 ``slips``         Slips of the pen in the entries that are off, alone or after a reading of the
                   whole answer
 ``verdicts``      Right in another way: with numbers for names, or another valid formula

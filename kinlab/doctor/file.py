@@ -30,7 +30,7 @@ from kinlab.doctor.text.own_names import (
     with_underscores,
     written_as,
 )
-from kinlab.doctor.text.shapes import in_full
+from kinlab.doctor.shapes import in_full
 from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import numbers_at
 from kinlab.errors import ExpressionError, FileError, KinlabError, NameUnknownError
@@ -68,7 +68,7 @@ def formula_document(path: str | Path) -> Lines | None:
 
 
 def examine_file(path: str | Path, samples: int = 200, seed: int = 0) -> list[Diagnosis]:
-    """Judges every formula of a file; :func:`kinlab.formulas.text.formula_file` has the format.
+    """Judges every formula of a file; :func:`kinlab.formulas.files.formula_file` has the format.
 
     Args:
         path: the TOML file.

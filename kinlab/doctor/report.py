@@ -159,7 +159,7 @@ def of_document(
     """Judges a TOML document of formulas, and goes on without the entries that cannot be read.
 
     Args:
-        document: as :func:`kinlab.formulas.text.formula_file` has it.
+        document: as :func:`kinlab.formulas.files.formula_file` has it.
         path: the file.
         samples, seed: as for :func:`of_file`.
         problems: lines that could not be read, from :func:`kinlab.formulas.lines.read_lines`.

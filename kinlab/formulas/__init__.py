@@ -7,7 +7,6 @@ module          what it holds
                 signs mean
 ``evaluate``    Plain evaluation of a formula's text as it is written: nothing opened, gathered or
                 cancelled
-``equations``   Equations that give an entry otherwise than by its name alone, solved for it
 ``files``       Files of formulas: entries, symbols, and what both stand on
 ``grids``       Matrices and vectors as people type them: LaTeX, MATLAB, Python; their sums and
                 products

@@ -29,7 +29,7 @@ from typing import Any
 
 from kinlab.errors import ExpressionError, FileError
 from kinlab.formulas import grids, tree, typed
-from kinlab.formulas.equations import solved
+from kinlab.formulas.handed.equations import solved
 from kinlab.formulas.handed.reading import as_formula
 from kinlab.formulas.signs.latex import LAMBDA
 from kinlab.formulas.signs.letters import WIDE

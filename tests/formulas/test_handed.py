@@ -6,7 +6,7 @@ import pytest
 
 import kinlab as kl
 from kinlab.errors import ExpressionError
-from kinlab.formulas.text import formula_file
+from kinlab.formulas.files import formula_file
 
 X = "l1*c1 + l2*c12"
 LATEX = r"l_1 c_1 + l_2 c_{12}"

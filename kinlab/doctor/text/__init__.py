@@ -21,8 +21,6 @@ module            what it holds
 ``own_names``     A file's formulas in the robot's names: the writer's own names and numbers, what
                   they mean
 ``pairs``         Pairs of effects that make up a difference, found without trying each with each
-``shapes``        Matrices of fewer rows than the engine's: a planar arm's 3 x 3 pose, a SCARA's
-                  4 x 4 Jacobian
 ``stand_ins``     Numbers of a text within their digits: what they may stand for, and whether that
                   explains it
 ``throughout``    One thing for another in the whole text: a name, a number, the joints, sines and

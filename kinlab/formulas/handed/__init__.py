@@ -7,6 +7,7 @@ module         what it holds
 ``columns``    A column of names before a column of formulas
 ``constants``  A free constant behind a potential
 ``dressed``    LaTeX as it is dressed for a page: boxes, arrows, colours, old commands
+``equations``  Equations that give an entry otherwise than by its name alone, solved for it
 ``letters``    Letters and signs of word processors and web pages
 ``rates``      Rates by the names that programs of algebra give them
 ``reading``    All that is done to a formula as it is handed in, in the order in which it is done
