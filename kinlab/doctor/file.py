@@ -18,6 +18,7 @@ from kinlab.doctor.derived import WRENCH
 from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.linkages import as_right, five_bar
 from kinlab.doctor.linkages.mechanisms import mechanism_beside
+from kinlab.doctor.shapes import in_full
 from kinlab.doctor.text.claims import alone, claimed_of, named_alone, with_forces, with_wrench
 from kinlab.doctor.text.habits import with_habits
 from kinlab.doctor.text.joints import joint_values
@@ -30,7 +31,6 @@ from kinlab.doctor.text.own_names import (
     with_underscores,
     written_as,
 )
-from kinlab.doctor.shapes import in_full
 from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import numbers_at
 from kinlab.errors import ExpressionError, FileError, KinlabError, NameUnknownError
