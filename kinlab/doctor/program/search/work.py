@@ -13,6 +13,8 @@ _NODE = 30
 """What compiling one node amounts to."""
 _ENDING, _LONGER = ast.While | ast.Break, 6
 """What ends when it is near enough, and how much longer it runs with an edit in it."""
+_REACHED = 4
+"""Which part of the turns that a loop may take it takes where an edit keeps it from ending."""
 
 
 class Work:
@@ -35,7 +37,9 @@ class Work:
         self.amounts = amounts(asked.trial, observed, asked.states)
         self.nodes = [len(nodes(tree)) for tree in trees]
         ending = (isinstance(one, _ENDING) for tree in trees for one in nodes(tree))
-        self.longer = _LONGER if any(ending) else 1
+        loops = [one for tree in trees for one in nodes(tree) if isinstance(one, ast.For)]
+        longest = max((_turns_left(one, observed) for one in loops), default=0)
+        self.longer = max(_LONGER, longest // _REACHED) if any(ending) else 1
         self.first, self.watched = len(asked.first), len(asked.watched)
 
     def of(self, edit: ProgramEdit) -> int:
@@ -46,3 +50,14 @@ class Work:
     def of_all(self, count: int) -> int:
         """What running the whole program at so many states amounts to."""
         return self.amounts[0] * count // self.watched
+
+
+def _turns_left(loop: ast.For, observed: Observed) -> int:
+    """How many times as many turns as it took a loop may take that breaks off; 0 of others."""
+    ends = any(isinstance(one, ast.Break) for one in nodes(loop))
+    of = loop.iter.args[-1:] if isinstance(loop.iter, ast.Call) else []
+    most, begun = (observed.of(of[0]) if ends and of else None), observed.of(loop.iter)
+    body = [seen.count for one in nodes(loop) if (seen := observed.of(one)) is not None]
+    if most is None or begun is None or not most.values or not most.whole or most.shape != ():
+        return 0
+    return int(max(map(float, most.values)) * begun.count // max(body, default=1))
