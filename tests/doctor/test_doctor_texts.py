@@ -327,3 +327,13 @@ def test_what_is_in_the_plane_of_x_and_y_is_not_judged_of_an_arm_that_stands(nam
 def test_a_comma_between_two_joints_is_refused(typed) -> None:
     with pytest.raises(kl.errors.ExpressionError, match="in a subscript"):
         kl.diagnose("planar2r", "x", typed)
+
+
+def test_a_moment_is_missing_where_others_are_named_and_no_rods_quarter_is_a_third() -> None:
+    """m l²/4 + m l²/12 is m l²/3 of this arm's rods alone."""
+    typed = (
+        "I1 + I2 + 1/4*m1*l1^2 + m2*(l1^2 + 1/4*l2^2 + l1*l2*c2) "
+        "+ m3*(l1^2 + l2^2 + 1/4*l3^2 + l1*l2*c2 + l1*l3*c2 + l2*l3*c3)"
+    )
+    cause = kl.diagnose("planar3r", "M11", typed).causes[0]
+    assert "the term I3 is missing" in cause.sentence and "should be 3" not in cause.sentence

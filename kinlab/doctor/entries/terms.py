@@ -156,7 +156,8 @@ def in_text(
     tried += [(line, 1) for line in dict.fromkeys((*plain, *lines)) if numbers and left_out]
     if bare:  # without a name the other numbers are the robot's own
         lines.sort(key=lambda line: not line.numeric)
-    if any(name[0] == "I" for name in tree.names(written.node)):  # who names one names them all
+    moments = any(name[0] == "I" for name in tree.names(written.node))
+    if moments:  # who names one names them all
         tried += [(line, 1) for line in lines * bool(unlike)]
         tried += [(line, 2) for line in unlike]
     tried += [(line, 1) for line in lines * bool(moved)]
@@ -164,7 +165,7 @@ def in_text(
     if numbers and not isinstance(derived, Derivation):
         tried += [(line, 1) for line in lines]
     tried += [(line, 2) for line in lines]
-    all_ = (*moved, *lines) if most > 2 else ()
+    all_ = (*moved, *unlike * moments, *lines) if most > 2 else ()
     asked = dict.fromkeys((line, min(count, most)) for line, count in tried if least <= count)
     ways: Iterator[tuple[Line, list[Mended]]] = chain(
         ((line, mended(line, count)) for line, count in asked),
