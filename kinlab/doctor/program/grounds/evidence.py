@@ -150,7 +150,9 @@ class Grounds:
             return _SPOILED
         if edit.kind == "factor" and id(edit.node) in self.flags:
             return _SPOILED
-        if edit.kind == "sign" and self._is_typed(edit.node):
+        if edit.kind == "sign" and (self._is_typed(edit.node) or self._mirrors(edit)):
+            return _SPOILED
+        if edit.kind == "missing matrix" and self._turns_a_table(edit):
             return _SPOILED
         if edit.kind in ("missing term", "transposed") and id(edit.node) in self.shared:
             return _SHARED
@@ -163,6 +165,22 @@ class Grounds:
         more += _AGREED if id(edit.node) in self.agreed else 0.0
         more += _USED * self._where_it_is_used(edit) + _RENAMED * self._turns_a_renamed(edit)
         return more + (_TRUSTED if edit.part in self.trusted else 0.0)
+
+    def _mirrors(self, edit: ProgramEdit) -> bool:
+        """Whether an edit puts a sign in front of a rotation matrix: of space it is none then."""
+        new = edit.changes[0].new
+        seen = self.observed.of(new.operand) if isinstance(new, ast.UnaryOp) else None
+        if seen is None or seen.shape != (3, 3) or not seen.values:
+            return False
+        return all(map(_is_rotation, seen.values))
+
+    def _turns_a_table(self, edit: ProgramEdit) -> bool:
+        """Whether an edit turns all the vectors of a list, of which one is taken."""
+        entry = edit.changes[0].holder
+        if not isinstance(entry, ast.Subscript) or edit.changes[0].field != "value":
+            return False
+        shape = self.observed.shape(entry.value)
+        return shape is not None and len(shape) > 1 and not isinstance(entry.slice, ast.Tuple)
 
     def _makes_a_chain(self, edit: ProgramEdit) -> bool:
         """Whether names follow on one another with an edit alone: ``T03 = T02 @ T23``."""
@@ -497,3 +515,9 @@ def _factor(edit: ProgramEdit) -> float:
     elif isinstance(edit.node, ast.Constant) and isinstance(edit.node.value, int | float):
         old = float(edit.node.value)
     return float(new) / old if isinstance(new, int | float) and old else 0.0
+
+
+def _is_rotation(value: Array) -> bool:
+    """Whether a 3 x 3 matrix is one."""
+    near = np.allclose(value @ value.T, np.eye(3), atol=TOLERANCES.formula_agrees)
+    return near and bool(np.linalg.det(value) > 0.0)
