@@ -351,3 +351,53 @@ def test_of_what_no_line_does_it_is_said_that_something_may_amount_to_it(
             "the formula reads the modified table as standard"
         )
         assert "or does what amounts to that: no line was found" in found.causes[0].sentence
+
+
+PLANAR_RECURSION = """
+import numpy as np
+L, M, G = [0.5, 0.4], [2.0, 1.5], 9.81
+P = [np.zeros(3), np.array([L[0], 0, 0]), np.array([L[1], 0, 0])]
+PC = [np.array([L[0], 0, 0]), np.array([L[1], 0, 0])]
+
+def rot(t):
+    c, s = np.cos(t), np.sin(t)
+    return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])
+
+def f(q, v, a):
+    R = [rot(q[0]), rot(q[1]), np.eye(3)]
+    z = np.array([0, 0, 1.0])
+    w, wd = np.zeros(3), np.zeros(3)
+    vd = np.array([0, G, 0])
+    F = []
+    for i in range(2):
+        Rt = R[i].T
+        vd = Rt @ (np.cross(wd, P[i]) + np.cross(w, np.cross(w, P[i])) + vd)
+        w, wd = Rt @ w + v[i]*z, Rt @ wd + a[i]*z
+        at = np.cross(wd, PC[i]) + np.cross(w, np.cross(w, PC[i])) + vd
+        F.append(M[i]*at)
+    fi, ni = np.zeros(3), np.zeros(3)
+    tau = np.zeros(2)
+    for i in (1, 0):
+        ahead = R[i + 1] @ fi
+        ni = R[i + 1] @ ni + np.cross(PC[i], F[i]) + np.cross(P[i + 1], ahead)
+        fi = ahead + F[i]
+        tau[i] = ni[2]
+    return tau
+"""
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "told"),
+    [
+        ("[0, G, 0]", "[0, -G, 0]", "should be `vd = np.array([0, G, 0])`"),
+        ("ahead = R[i + 1] @ fi", "ahead = fi", "R[i + 1] @"),
+    ],
+)
+def test_a_rotation_gets_no_sign_and_a_list_of_vectors_no_rotation(right, wrong, told, tmp_path):
+    """Of the lines that come to the same the one is told in which nobody would mean another."""
+    path = tmp_path / "hand.py"
+    assert kl.diagnose("planar2r", "inverse_dynamics", written(PLANAR_RECURSION, path)).agrees
+    slipped = PLANAR_RECURSION.replace(right, wrong)
+    found = kl.diagnose("planar2r", "inverse_dynamics", written(slipped, tmp_path / "slip.py"))
+    sentence = found.causes[0].sentence
+    assert told in sentence and "-rot(" not in sentence and "(P @" not in sentence, str(found)
