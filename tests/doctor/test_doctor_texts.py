@@ -337,3 +337,12 @@ def test_a_moment_is_missing_where_others_are_named_and_no_rods_quarter_is_a_thi
     )
     cause = kl.diagnose("planar3r", "M11", typed).causes[0]
     assert "the term I3 is missing" in cause.sentence and "should be 3" not in cause.sentence
+
+
+@pytest.mark.parametrize("angle", ["q3", "q2"])
+def test_no_slip_is_told_that_leaves_nothing_of_its_term(angle: str) -> None:
+    """qd2 - qd2 with the whole term put behind it is no repair of qd1 - qd2."""
+    length = "l1" if angle == "q3" else "l3"
+    found = kl.diagnose("planar3r", "C32", f"l2*{length}*m3*(qd1 - qd2)*sin({angle})/2")
+    assert "- qd2 should be + qd2" in found.causes[0].sentence, str(found)
+    assert "missing" not in found.causes[0].sentence

@@ -319,6 +319,8 @@ class Line:
         """Notes a change by what it does to the whole."""
         if self.numeric and change.kind in _NAMED and _in_proportion(place.value, new):
             return  # at the robot's own numbers that is any other number of the place
+        if change.kind != "extra term" and self._vanishes(place, new):
+            return  # qd1 - qd2 as qd2 - qd2: that takes a term out, and does not say so
         with np.errstate(invalid="ignore"):
             effect = self.climbed(place, new) - self.root.value
         if change.kind == "missing term" and self._is_there(effect):
@@ -326,6 +328,13 @@ class Line:
         if np.isfinite(effect).all() and np.max(np.abs(effect)) > 1e-12 * self.scale:
             self.changes.append(change)
             self.rows.append(effect)
+
+    def _vanishes(self, place: Place, new: Array) -> bool:
+        """Whether nothing is left of a sum with something else in one of its places."""
+        above = place.above
+        if above is None or not is_sum(above.node) or not np.any(above.value):
+            return False
+        return not np.any(_recombined(above, place, new, self.siblings))
 
     def _is_there(self, effect: Array) -> bool:
         """Whether what is added is a term that is there, or takes one away."""
