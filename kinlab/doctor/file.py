@@ -134,8 +134,12 @@ def _of_chain(parts: list[Diagnosis]) -> Diagnosis:
 
 
 def _examined(file: FormulaFile, robot: Mechanism, samples: int, seed: int) -> list[Diagnosis]:
-    given = {*file.symbols}
     file, shape = in_full(file, robot)
+    return [_noted(one, shape) for one in _as_it_is(file, robot, samples, seed)]
+
+
+def _as_it_is(file: FormulaFile, robot: Mechanism, samples: int, seed: int) -> list[Diagnosis]:
+    given = {*file.symbols}
     file = _with_names(file, robot)
 
     def judged(other: FormulaFile) -> list[Diagnosis]:
@@ -144,7 +148,7 @@ def _examined(file: FormulaFile, robot: Mechanism, samples: int, seed: int) -> l
 
     found = judged(file)
     if all(one.agrees for one in found):
-        return [replace(x, remarks=(shape, *x.remarks)) if shape else x for x in found]
+        return found
     named, said = constants_named(file, robot)
     if said:
         pairs = zip(found, judged(named), strict=True)
@@ -153,7 +157,7 @@ def _examined(file: FormulaFile, robot: Mechanism, samples: int, seed: int) -> l
     if said:
         pairs = zip(found, judged(away), strict=True)
         found = [_by_distances(one, other, file, said) for one, other in pairs]
-    return [_also_said(x, (shape,)) if shape and x.causes else x for x in found]
+    return found
 
 
 def _with_names(file: FormulaFile, robot: Mechanism) -> FormulaFile:
@@ -254,10 +258,16 @@ def _in_tool_axes(
     answers = _answers("statics_tool", there, named, robot, file, samples, seed)
     found = list(_of_quantity("statics_tool", answers, named))
     said = _("the wrench is read in tool axes")
-    return [
-        _also_said(one, (said,)) if one.causes else replace(one, remarks=(*one.remarks, said))
-        for one in found
-    ]
+    return [_noted(one, said) for one in found]
+
+
+def _noted(found: Diagnosis, note: str) -> Diagnosis:
+    """A diagnosis with what is to be said of how the formula was read, if anything."""
+    if not note:
+        return found
+    if found.causes:
+        return _also_said(found, (note,))
+    return replace(found, remarks=(*found.remarks, note))
 
 
 def _also_said(found: Diagnosis, notes: tuple[str, ...]) -> Diagnosis:

@@ -28,7 +28,7 @@ from kinlab.doctor.text.line import (
 from kinlab.doctor.text.meanings import CLOSE
 from kinlab.doctor.text.throughout import NUMBERS, alike, throughout
 from kinlab.formulas import tree
-from kinlab.formulas.text import canonical, parse
+from kinlab.formulas.text import canonical
 from kinlab.formulas.tree import Node
 from kinlab.host.language import N_
 
@@ -65,7 +65,7 @@ def study(line: Line) -> None:
 
 def study_definition(line: Line) -> None:
     """Notes what else a name may be set to: another angle, or another name of the writer's more."""
-    node = tree.renamed(parse(line.source), {w: line.meaning(w) for w in words_in(line.source)})
+    node = line.meant(line.source)
     if tree.names(node) <= {f"q{i + 1}" for i in range(line.names.n)}:
         for angle in dict.fromkeys((*line.names.angles, *_beside(line, node))):
             if angle != node:
@@ -261,9 +261,7 @@ def _fitting(line: Line, place: Place) -> float:
 def _call(line: Line, place: Place, node: ast.Call) -> None:
     name = node.func.id if isinstance(node.func, ast.Name) else ""
     if name in ("sin", "cos", "tan"):
-        inside = parse(ast.unparse(node.args[0]))
-        mapped = {w: line.meaning(w) for w in tree.names(inside)}
-        _wave(line, place, tree.call(name, tree.renamed(inside, mapped)))
+        _wave(line, place, tree.call(name, line.meant(ast.unparse(node.args[0]))))
     elif name == "sqrt":
         root = line.siblings[id(place)][0]
         line.instead(place, f"({line.segment(root)})", root.value, "power", 1.3)
@@ -408,8 +406,7 @@ def _as_wave(line: Line, place: Place) -> Node | None:
     if isinstance(node, ast.Name):
         meant = line.meaning(node.id)
     elif isinstance(node, ast.Call):
-        inside = parse(line.segment(place))
-        meant = tree.renamed(inside, {w: line.meaning(w) for w in tree.names(inside)})
+        meant = line.meant(line.segment(place))
     return meant if meant is not None and meant.op in ("sin", "cos") else None
 
 

@@ -217,10 +217,12 @@ class Line:
     def meaning(self, word: str) -> Node:
         """What a name stands for: q1 for th1, q1 + q2 for q12."""
         own = self.text.symbols
-        if word not in own:
-            return canonical(word)
-        inside = parse(own[word])
-        return tree.renamed(inside, {name: self.meaning(name) for name in tree.names(inside)})
+        return self.meant(own[word]) if word in own else canonical(word)
+
+    def meant(self, text: str) -> Node:
+        """A piece of a formula in the robot's names."""
+        node = parse(text)
+        return tree.renamed(node, {name: self.meaning(name) for name in tree.names(node)})
 
     @cached_property
     def sums(self) -> dict[Node, Node]:

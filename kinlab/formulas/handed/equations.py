@@ -34,48 +34,47 @@ def solved(text: str, entry: str, place: str) -> str:
     Raises:
         ExpressionError: the entry stands on both sides, or not as one factor of one term.
     """
-    sides = bare(text).split("=")
-    if len(sides) != 2 or any(not side.strip() or side.rstrip()[-1] in "<>!:" for side in sides):
+    sides = [side.strip("& ") for side in bare(text).split("=")]
+    if len(sides) != 2 or any(not side or side[-1] in "<>!:" for side in sides):
         return text
-    found = [_with_entry(side, entry, is_latex(text)) for side in sides]
-    known = [k for k, one in enumerate(found) if one is not None]
-    if any(is_name(side.strip("& ")) or _ENTRY.fullmatch(side.strip("& ")) for side in sides):
+    if any(is_name(side) or _ENTRY.fullmatch(side) for side in sides):
         return text
-    if not known:
-        if _is_quotient(sides[0]):
+    latex = is_latex(text)
+    nodes = [_read(side, latex) for side in sides]
+    found = [(k, name) for k, node in enumerate(nodes) if (name := _entry_in(node, entry))]
+    if not found:
+        if _is_quotient(nodes[0]):
             raise refused(
                 place, N_("the formula begins with {text} =, which is another"), text=sides[0][:40]
             )
         return text
-    node, name = found[known[0]] or (_NOTHING, "")
-    factor, rest = _linear(node, name)
-    if len(known) > 1 or factor is None:
+    k, name = found[0]
+    factor, rest = _linear(nodes[k], name)
+    if len(found) > 1 or factor is None:
         raise refused(place, N_("write {entry} = ..., with {entry} nowhere else"), entry=entry)
-    other = sides[1 - known[0]].strip("& ")
-    latex = is_latex(text)
+    other = sides[1 - k]
     whole = _over(_less(other, rest, latex), factor, latex)
     return f"${whole}$" if latex else whole
 
 
-def _is_quotient(side: str) -> bool:
-    """Whether a side is plainly no name: tau2/m2, 2*x."""
+def _read(side: str, latex: bool) -> Node:
+    """The tree of a side; nothing of what cannot be read."""
     try:
-        node = parse(plain_formula(side))
+        return parse(plain_formula(f"${side}$" if latex else side))
     except ExpressionError:
-        return False
+        return _NOTHING
+
+
+def _is_quotient(node: Node) -> bool:
+    """Whether a side is plainly no name: tau2/m2, 2*x."""
     factors = node.args if node.op == "mul" else ()
     return any(one.op == "pow" or (one.op == "num" and abs(one.value) != 1) for one in factors)
 
 
-def _with_entry(side: str, entry: str, latex: bool) -> tuple[Node, str] | None:
-    """A side in which the entry stands among other things, and its name there."""
-    side = side.strip("& ")
-    try:
-        node = parse(plain_formula(f"${side}$" if latex else side))
-    except ExpressionError:
-        return None
-    exact = [name for name in sorted(tree.names(node)) if is_name_of(name, entry)]
-    return (node, exact[0]) if len(exact) == 1 and node != tree.sym(exact[0]) else None
+def _entry_in(node: Node, entry: str) -> str:
+    """The entry's name in a side where it stands among other things; empty where it does not."""
+    names = [name for name in sorted(tree.names(node)) if is_name_of(name, entry)]
+    return names[0] if len(names) == 1 and node != tree.sym(names[0]) else ""
 
 
 def _linear(node: Node, name: str) -> tuple[Node | None, Node]:

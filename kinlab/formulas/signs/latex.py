@@ -10,6 +10,7 @@ import re
 from dataclasses import dataclass
 
 from kinlab.errors import ExpressionError
+from kinlab.formulas.signs.letters import GREEK
 from kinlab.formulas.signs.refusals import refused
 from kinlab.host.language import N_, _
 
@@ -42,13 +43,7 @@ _NAME = re.compile(r"[A-Za-z][A-Za-z0-9]*")
 _PLAIN = re.compile(r"\d+(?:\.\d+)?|pi")
 LAMBDA = "lam"
 """What the letter is called in plain text, where its own name is a word of the language."""
-_LETTERS = (
-    "alpha beta gamma delta epsilon zeta eta theta Theta iota kappa mu nu xi rho sigma tau upsilon "
-    "phi chi psi omega Gamma Delta Lambda Xi Phi Psi Omega"
-)
-_GREEK = {rf"\{name}": name for name in _LETTERS.split()}
-_GREEK[r"\lambda"] = LAMBDA
-_GREEK[r"\pi"] = "pi"
+_GREEK = {rf"\{name}": name for name in GREEK} | {r"\lambda": LAMBDA}
 _GREEK |= {rf"\var{name}": name for name in ("theta", "phi", "rho", "epsilon", "kappa")}
 _THETAS = ([r"\theta"], [r"\vartheta"])
 _JOINTS = "123456789"

@@ -21,6 +21,8 @@ _LETTERS = (
     "ω omega Γ Gamma Δ Delta Θ Theta Λ Lambda Ξ Xi Φ Phi Ψ Psi Ω Omega ℓ l"
 )
 _GREEK = dict(zip(_LETTERS.split()[::2], _LETTERS.split()[1::2], strict=True))
+GREEK = tuple(dict.fromkeys(name for name in _GREEK.values() if name != "l"))
+"""The names of Greek letters."""
 _PRIMED = re.compile(r"(?<![A-Za-z])(q|th|theta|θ)(_?[\d₀-₉]+)('{1,2}|′{1,2}|″)(?!')")
 """θ1' and q2'', the rates of a joint."""
 _DOTTED = re.compile(r"([A-Za-zα-ωϑϕℓ])([\u0307\u0308])")
