@@ -401,3 +401,23 @@ def test_long_texts_are_read_soon():
     ):
         text = "l1*c1 + " + piece * (18_000 // len(piece))
         refused("planar2r", "x", text)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "其中 q2 为连杆2与水平线的夹角, ",
+        "设 θ₂ 为与水平线的夹角，则 ",
+        "角度从竖直方向量起, ",
+        "Here q2 is measured from the x axis, ",
+        "q2 is the absolute angle: ",
+        "With absolute angles ",
+        "In degrees: ",
+        "Angles measured from the vertical: ",
+        "Mit absoluten Winkeln: ",
+    ],
+)
+def test_words_in_front_that_say_what_a_name_means_are_no_dress(words: str) -> None:
+    """A right formula of other angles would be called wrong, and nothing said of the words."""
+    with pytest.raises(ExpressionError, match="in front of the formula"):
+        kl.diagnose("planar2r", "x", f"{words}x = l1*c1 + l2*c2")

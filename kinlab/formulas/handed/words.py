@@ -57,6 +57,14 @@ _AN_ANGLE = re.compile(r"\bangles?\b|winkel|角", re.IGNORECASE)
 _A_LINK = re.compile(r"\blinks?\b|\bglied|连杆|杆", re.IGNORECASE)
 _A_JOINT = re.compile(r"\bjoints?\b|gelenk|关节", re.IGNORECASE)
 _NAMES = re.compile(r"(?:\\?[A-Za-zα-ω]\w{0,6}(?:_?\{\w{1,4}\}|[₀-₉]{1,2})?(?![A-Za-z])|\d+)")
+_EXPLAINS = re.compile(
+    r"其中|式中|这里|竖直|铅垂|水平|夹角|绝对|相对|量起|角度制"
+    r"|(?:\\?\b(?:theta|th|q)|[θϑ])_?\{?[\d₀-₉]+\}?\s*(?:为|是|表示|is\b|are\b|denotes\b|means\b)"
+    r"|\b(?:measured|absolute|relative|vertical|horizontal|degrees?|gemessen|absolute[rn]?|senkrecht"
+    r"|waagerecht|grad)\b",
+    re.IGNORECASE,
+)
+"""Words in front that may say what a name means: the angle from the vertical."""
 _KNOWN = re.compile(r"\\?(?:theta|th|q|l|L|m|g|I|alpha|beta)(?:_?\{?\w{0,2}\}?|[₀-₉]{1,2})")
 
 
@@ -73,7 +81,7 @@ def without_words(text: str, entry: str, place: str) -> str:
     """
     text, typeset = _inline(text)
     front, mark, tail = _cut(text)
-    front = "\n".join(_without_front(line, entry) for line in front.split("\n"))
+    front = "\n".join(_without_front(line, entry, place) for line in front.split("\n"))
     said = _kept(tail, place) if mark else None
     if said is not None:
         text = f"{front}, where {said}" if said else front
@@ -102,7 +110,11 @@ def _cut(text: str) -> tuple[str, str, str]:
 # -------- In front
 
 
-def _without_front(line: str, entry: str) -> str:
+def _without_front(line: str, entry: str, place: str) -> str:
+    front = line.partition("=")[0]
+    if _EXPLAINS.search(front):
+        said = N_("{words!r} in front of the formula may change what its names mean; leave it out")
+        raise refused(place, said, words=front.strip()[:60])
     given = line
     plain = line.lstrip("$ \t")
     dollars = line[: len(line) - len(plain)].strip()
