@@ -220,8 +220,10 @@ def covered_up(
         )
         nothing += [name for name in zero if name not in nothing]
         if gap > TOLERANCES.formula_agrees:
-            # a term put in for another of the same value is no slip, but another form
-            told = [s for s in of_entry(case, entry, text) if not {*s.kinds} & _WHOLE_TERMS]
+            # a term put in for another of the same value is no slip, but another form; and what
+            # two slips make of right numbers may be the same number: a sign twice
+            single = (slip for slip in of_entry(case, entry, text) if len(slip.kinds) == 1)
+            told = [slip for slip in single if not {*slip.kinds} & _WHOLE_TERMS]
             slips += told[:1]
             largest = max(largest, gap) if told else largest
             kept = [] if told else kept

@@ -25,7 +25,7 @@ from kinlab.host.language import N_, _
 
 # -------- Which writing it is
 
-_LATEX = re.compile(r"\\[A-Za-z]|\$|[_^]\{")
+_LATEX = re.compile(r"\\[A-Za-z,;:!]|\$|[_^]\{")
 _MODULES = "np|numpy|math|Math|sp|sympy"
 _PREFIX = re.compile(rf"(?<![\w.])(?:{_MODULES})\.(?=[A-Za-z])")
 _CONSTANT = re.compile(r"(?<![\w.])Math\.PI(?!\w)")

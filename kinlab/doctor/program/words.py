@@ -611,7 +611,8 @@ def _robots_own(edit: ProgramEdit, search: LineSearch) -> bool:
     if own is not None and float(own) == old:
         return True
     is_old, is_new = (is_own(search.case.robot, x) for x in (old, new))
-    return is_old and not (is_new or edit.of_the_arm)
+    turned = new == -old and bool(edit.place)  # a point of axes may lie on the other side
+    return is_old and not (is_new or edit.of_the_arm or turned)
 
 
 def _of_rounding(edit: ProgramEdit, search: LineSearch) -> bool:

@@ -49,6 +49,10 @@ _DIVIDED = 1.07
 """Cost of a divisor that is lost."""
 _SAME_NUMBER = 0.06
 """What a name costs less that has the number of all others in a matrix."""
+_INSIDE = 0.06
+"""What a product of the program costs more as a term of what is turned."""
+_SIGNED = 1.1
+"""Cost of a sign that has a name for a term without."""
 _THRICE = 3
 """How often a name may stand in a sum of three equal links."""
 
@@ -62,6 +66,9 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     if shape and not literal and not written and not isinstance(parent, ast.Attribute):
         yield from _matrices(here, scope, shape)
     row = len(shape) == 1 and isinstance(node, ast.Name) and scope.has_numpy
+    times = isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.Mult)
+    if times and len(shape) == 1 and isinstance(node, ast.Name):
+        yield here.instead(ast.BinOp(node, ast.Pow(), number(2)), "power", 1.12)
     if row and not isinstance(parent, ast.Subscript | ast.BinOp | ast.Attribute):
         total = ast.Attribute(ast.Name("np", ast.Load()), "cumsum", ast.Load())
         unpacked = isinstance(parent, ast.Assign) and isinstance(parent.targets[0], ast.Tuple)
@@ -117,6 +124,8 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
             if operated and not isinstance(op, ast.Pow):
                 yield here.instead(scalar, "name", 1.07 + scope.dear(scalar))
         return
+    if summand or (isinstance(op, ast.Mult) and here.field == "left"):
+        yield from _signs(here, scope)
     if shape == ():
         yield from _scalars(here, scope, summand or listed or below, operated)
         if scope.root is not None and _has_squares(node):
@@ -262,6 +271,18 @@ def _angle(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
             yield here.instead(ast.BinOp(first, ast.Add(), last), "argument", cost)
 
 
+def _signs(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """What is 1 or -1, of a solution's branch or of a side, times a term that lacks it."""
+    if not isinstance(here.node, ast.Name | ast.Subscript | ast.Call):
+        return
+    beside = {ast.unparse(one) for one in nodes(statement_of(here.above) or here.node)}
+    for text, one in scope.simple(()):
+        seen = scope.observed.of(one)
+        told = {*map(float, seen.values)} if seen is not None else set()
+        if told and told <= {1.0, -1.0} and text not in beside:
+            yield here.instead(ast.BinOp(one, ast.Mult(), here.node), "missing factor", _SIGNED)
+
+
 def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[ProgramEdit]:
     node, parent = here.node, here.parent
     own = ast.unparse(node)
@@ -398,6 +419,8 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
     entry = isinstance(here.parent, ast.List | ast.Tuple)
     stem = stem_of(here.above)
     siblings = scope.addends.get(stem, set()) if whole else set()
+    turned = isinstance(here.parent, ast.BinOp) and isinstance(here.parent.op, ast.MatMult)
+    turned = turned and here.field == "right" and len(shape) == 1
     if shape == ():
         across = (scope.addends.get(one, set()) for one in _of_the_other_axis(stem))
         yield from _turned_terms(here, scope, siblings.union(*across if whole else ()))
@@ -405,7 +428,10 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
     for text, piece in scope.pieces_here(shape).items():
         named = isinstance(piece, ast.Name | ast.Subscript)
         one = isinstance(piece, ast.Call) and called(piece) == "eye"
-        if text == own or not (whole or named or one or isinstance(piece, ast.Attribute)):
+        inside = turned and isinstance(piece, ast.BinOp) and isinstance(piece.op, ast.Mult)
+        if text == own or not (
+            whole or named or one or inside or isinstance(piece, ast.Attribute)
+        ):
             continue
         if isinstance(piece, ast.List | ast.Tuple):
             continue  # what an array is made of is no term of it
@@ -414,7 +440,8 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
         beside = entry and used and not known and not _of_a_kind(piece, node)
         if beside and text not in _entries_beside(here):
             continue
-        dear = min(scope.dear(piece), _BESIDE if text in siblings else 1.0)
+        near = _BESIDE if text in siblings else _INSIDE if inside else 1.0
+        dear = min(scope.dear(piece), near)
         for op, cost in ((ast.Add(), 1.06), (ast.Sub(), 1.08)):
             yield here.instead(ast.BinOp(node, op, piece), "missing term", cost + dear)
         if one:

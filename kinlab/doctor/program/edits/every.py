@@ -215,6 +215,7 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Progra
         yield from of_constant(here, index, scope)
     elif isinstance(node, ast.List | ast.Tuple):
         yield from of_sequence(here, observed)
+        yield from exchanges.of_row(here, scope, observed)
     elif isinstance(node, ast.IfExp):
         yield here.within(node, "test", negated(node.test), "condition", 1.3)
     elif isinstance(node, ast.Compare):

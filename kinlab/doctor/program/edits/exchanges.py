@@ -101,6 +101,50 @@ def of_repeated(here: Here, scope: Scope, observed: Observed) -> Iterator[Progra
                     yield here.instead(ast.BinOp(other, node.op, other), "name", 1.16)
 
 
+def of_row(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
+    """Another name in all entries of a row: ``[l*c, l*s]`` for ``[r*c, r*s]``.
+
+    What an object or a dictionary has stands for another number of the same one.
+    """
+    entries = [one for one in here.node.elts if not isinstance(one, ast.Constant)]
+    if len(entries) < 2:
+        return
+    used = [
+        {ast.unparse(x): x for x in nodes(one) if isinstance(x, _PIECES) and _is_piece(x)}
+        for one in entries
+    ]
+    for text in [text for text in used[0] if all(text in other for other in used[1:])]:
+        node = used[0][text]
+        shape = observed.shape(node)
+        if shape is None or text in scope.counters:
+            continue
+        for other, new in scope.simple(shape):
+            if other == text or other in used[0]:
+                continue
+            if isinstance(node, ast.Name):
+                like, cost = isinstance(new, ast.Name) and other[0] == text[0], 1.1
+            else:
+                like, cost = _owner(new) == _owner(node), 1.06
+            if like:
+                put = [_Renamed({text: new}).of(one) for one in here.node.elts]
+                yield here.within(here.node, "elts", put, "name", cost)
+
+
+_PIECES = ast.Name | ast.Subscript | ast.Attribute
+
+
+def _is_piece(node: ast.Name | ast.Subscript | ast.Attribute) -> bool:
+    """Whether it is a name, an attribute, or what a dictionary has under a key."""
+    if not isinstance(node.ctx, ast.Load):
+        return False
+    key = node.slice if isinstance(node, ast.Subscript) else ast.Constant("")
+    return isinstance(key, ast.Constant) and isinstance(key.value, str)
+
+
+def _owner(node: ast.expr) -> str:
+    return ast.unparse(node.value) if isinstance(node, ast.Subscript | ast.Attribute) else ""
+
+
 def _go_together(one: str, other: str) -> bool:
     """Whether names may be taken for one another: ``l1`` and ``l2``, ``s12`` and ``c12``."""
     return one[0] == other[0] or (one[0] + other[0] in ("sc", "cs") and one[1:] == other[1:])
@@ -125,6 +169,13 @@ class _Renamed(ast.NodeTransformer):
 
     def visit_Name(self, node: ast.Name) -> ast.expr:
         return copied(self.others.get(node.id, node))
+
+    def visit_Attribute(self, node: ast.Attribute) -> ast.expr:
+        other = self.others.get(ast.unparse(node))
+        if other is not None:
+            return copied(other)
+        self.generic_visit(node)
+        return node
 
     def visit_Subscript(self, node: ast.Subscript) -> ast.expr:
         other = self.others.get(ast.unparse(node))

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from types import ModuleType
 
 import numpy as np
@@ -45,6 +46,35 @@ def suspects(trial: Trial, observed: Observed, known: Sequence[Glossary]) -> set
     return found
 
 
+@dataclass(frozen=True)
+class OddValue:
+    """A value that is nothing known, though all that it is made of is.
+
+    Attributes:
+        statement: what sets it.
+        value: the expression.
+        turn: the first pass at which it is that.
+    """
+
+    statement: ast.Assign | ast.AugAssign | ast.Return
+    value: ast.expr
+    turn: int
+
+
+def odd_values(trial: Trial, observed: Observed, known: Sequence[Glossary]) -> list[OddValue]:
+    """The values that are wrong by what they are made of, in the order of the program."""
+    if not known:
+        return []
+    look = _Look(trial, observed, known)
+    every = (node for tree in trial.trees for node in nodes(tree) if isinstance(node, _STATEMENTS))
+    return [
+        OddValue(node, value, turn)
+        for node in every
+        for value in (_values(node.value) if node.value is not None else ())
+        if (turn := look.odd_pass(value)) is not None
+    ]
+
+
 def behind(trial: Trial, observed: Observed, known: Sequence[Glossary]) -> set[int]:
     """Suspects, and what may be at fault beside them, by identity.
 
@@ -67,7 +97,7 @@ def behind(trial: Trial, observed: Observed, known: Sequence[Glossary]) -> set[i
             found |= {id(inner) for inner in nodes(tree)}
         for node in nodes(tree):
             sets = _set_by(node)
-            alias = isinstance(node, ast.Assign) and isinstance(node.value, ast.Name)
+            alias = isinstance(node, ast.Assign) and isinstance(node.value, _PIECES)
             if sets & doubtful or (alias and sets & named):
                 found |= {id(inner) for inner in nodes(node)}
             if sets and id(node) in found:
@@ -116,9 +146,13 @@ class _Look:
 
     def wrong(self, value: ast.expr) -> bool:
         """Whether an expression is nothing known at some pass, and all that it is made of is."""
+        return self.odd_pass(value) is not None
+
+    def odd_pass(self, value: ast.expr) -> int | None:
+        """The first pass at which it is that."""
         seen = self.observed.of(value)
         if seen is None or seen.shape is None or seen.whole or not seen.values:
-            return False
+            return None
         pieces = [*_pieces(value)]
         passes = self.passes(seen)
         odd = [
@@ -126,7 +160,9 @@ class _Look:
         ]
         if not odd and all(map(zeros_and_ones, passes)):
             odd = [0] if any(self.moves(piece) for piece in pieces) else []
-        return bool(odd and pieces) and all(self.vouched(one, seen, odd[0]) for one in pieces)
+        if not odd or not pieces or not all(self.vouched(one, seen, odd[0]) for one in pieces):
+            return None
+        return odd[0]
 
     def is_term(self, piece: ast.expr) -> bool:
         """Whether a piece is of zeros and ones alone, a term of a sum, or turned or transposed."""

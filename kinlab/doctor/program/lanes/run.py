@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import ast
 import logging
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -26,6 +28,10 @@ _HALVED = 80
 """Times that lanes of one question are halved."""
 
 
+class _MetError(BaseException):
+    """What is watched was met: no handler of the program's is to take it for an error."""
+
+
 class InLanes:
     """A program with many edits, of which each lane has its own.
 
@@ -35,6 +41,7 @@ class InLanes:
         edits: of each effect those that have it; their numbers are their places.
         states: at which it is asked.
         counts: whether edits of whole numbers of the data are among them.
+        watched: an expression of which :meth:`met` tells what it is.
 
     Attributes:
         placed: the numbers of the edits that lanes can follow.
@@ -51,9 +58,12 @@ class InLanes:
         edits: Edits,
         states: Sequence[tuple[Any, ...]],
         counts: bool,
+        watched: ast.expr | None = None,
     ) -> None:
         self.trial, self.states = trial, states
-        self.woven = Woven(trial, observed, edits)
+        self.woven = Woven(trial, observed, edits, watched)
+        self._met: list[Any] = []
+        self._count = 0
         whole = {n for n, change in self.woven.data if isinstance(change.now, int)}
         self.counts = counts and bool(whole)
         self.placed = self.woven.placed - (set() if counts else whole)
@@ -78,6 +88,47 @@ class InLanes:
         """
         self._left = _HALVED
         return self._in_halves(chosen, count, most)
+
+    def met(self, chosen: Any, count: int, most: int = _MOST) -> list[Array]:
+        """The numbers of what is watched, each time that it is met at the first state, (C, P) each.
+
+        NaN where a lane was lost; fewer where it is met less often, and none where the program
+        does what lanes cannot follow, or more work than may be done.
+
+        Args:
+            chosen: the numbers of the edits of each lane, (C, most); -1 for none.
+            count: how many times at most.
+            most: work that may be done.
+        """
+        lanes, before = Lanes(chosen, most), self.work
+        self._met, self._count = [], count
+        try:
+            with self._placed(lanes):
+                self.trial.function(*(x.copy() for x in self.states[0]))
+        except _MetError:
+            pass
+        except (FailedError, TooMuchError, TypeError, ValueError):
+            return []
+        finally:
+            self.work = before + lanes.work
+        found: list[Array] = []
+        for value in self._met:
+            entries = np.array(value, dtype=object).ravel()
+            try:
+                rows = np.array([_full(entry, lanes) for entry in entries]).T
+            except (TypeError, ValueError):
+                return []
+            rows[lanes.lost] = np.nan
+            found.append(rows)
+        return found
+
+    def _meet(self, lanes: Lanes, value: Any) -> Any:
+        """Keeps what is watched, where it is met in all lanes; nothing is run after the last."""
+        if lanes.here is lanes.all:
+            self._met.append(value)
+            if len(self._met) == self._count:
+                raise _MetError
+        return value
 
     def _in_halves(self, chosen: Any, count: int | None, most: int) -> Array | None:
         """The same; where it fails each half alone, as often as that may be done."""
@@ -140,6 +191,7 @@ class InLanes:
                 ways = Ways(lanes)
                 trial.space |= {"_pick": lanes.pick, "_kept": ways.kept}
                 trial.space |= {"_turns": ways.turns, "_sides": ways.sides}
+                trial.space["_met"] = partial(self._meet, lanes)
                 for k in every:
                     trial.place(k, self._functions[k])
                 trial.stale()

@@ -51,14 +51,17 @@ class Woven:
         trial: the program.
         observed: its expressions as it is.
         edits: of each effect those that have it; their numbers are their places here.
+        watched: an expression whose values are told as they are met.
 
     Attributes:
         placed: the edits that are in them; others are none that lanes can follow.
         data: what edits change in the data: the number of each, and what is put where.
     """
 
-    def __init__(self, trial: Trial, observed: Observed, edits: Edits) -> None:
-        self.observed, self._count = observed, len(edits)
+    def __init__(
+        self, trial: Trial, observed: Observed, edits: Edits, watched: ast.expr | None = None
+    ) -> None:
+        self.observed, self._count, self._watched = observed, len(edits), watched
         self._above: dict[int, Spot] = {}
         self._lists: dict[int, tuple[ast.AST, str]] = {}
         for tree in trial.trees:
@@ -80,6 +83,8 @@ class Woven:
                     self.placed.add(number)
                     break
         self._names = 0
+        if watched is not None:
+            self._mark(self._above[id(watched)][0])
 
     def _put(self, number: int, edit: ProgramEdit) -> bool:
         """Puts an edit where it is asked, if it can be."""
@@ -292,7 +297,7 @@ class Woven:
             runs = isinstance(parent, ast.For)
             return not runs if seen.shape else isinstance(parent, ast.List)
         numeric = seen is not None and seen.shape is not None
-        if isinstance(node, ast.Tuple | ast.List) and isinstance(parent, ast.Call):
+        if isinstance(node, ast.Tuple | ast.List | ast.Dict) and isinstance(parent, ast.Call):
             numeric = numeric or called(parent) in WRITES  # put at the end of a list as it is
         return numeric or isinstance(node, _LISTS) or isinstance(parent, ast.stmt)
 
@@ -413,6 +418,14 @@ class Woven:
         return self._edited(_at(spot), (id(parent), name, k), scope, asked)
 
     def _edited(
+        self, node: Any, key: Key | None, scope: tuple[str, ...], asked: dict[Key, Any]
+    ) -> Any:
+        found = self._asked_of(node, key, scope, asked)
+        if node is not self._watched:
+            return found
+        return ast.Call(ast.Name("_met", ast.Load()), [found], [])
+
+    def _asked_of(
         self, node: Any, key: Key | None, scope: tuple[str, ...], asked: dict[Key, Any]
     ) -> Any:
         edited = None if key is None else self._sites.get(key)

@@ -105,7 +105,7 @@ class OtherArms:
         if before is not None and apart is not None:
             odd = apart.odd and len(several) > 1 and not self.hold_for(apart)
             own = (edit for edit in several if self._sets_own(edit))
-            put = {(edit.node, edit.place) for edit in own}
+            put = {(x.node if x.part == DATA else id(x.node), x.place) for x in own}
             if odd or before.fitting - apart.fitting - put:
                 return True  # a name has a number that none has of those that are called so
             if apart.whole and self.at(apart) is not None:

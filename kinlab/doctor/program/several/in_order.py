@@ -11,6 +11,7 @@ from kinlab.doctor.program.grounds.suspects import behind
 from kinlab.doctor.program.places import DATA, ProgramEdit, changed
 from kinlab.doctor.program.search.repair import LineSearch, ProgramRepair
 from kinlab.doctor.program.several.effects import Effects, Way
+from kinlab.doctor.program.several.two_of_one import TwoOfOne
 from kinlab.doctor.program.several.witnesses import FirstStep, Witnesses
 from kinlab.doctor.program.trial import NoProgramError
 
@@ -20,6 +21,8 @@ _WAYS, _TRIED = 2, 12
 """Edits from which is gone on at first, and of which it is looked whether all is right."""
 _EACH = 12_000_000
 """Work for one look."""
+_TWO = 40_000_000
+"""Work for two edits that are a step together."""
 _LOOKING = 700_000
 """What watching a program anew amounts to, beside running it."""
 
@@ -38,6 +41,7 @@ class InOrder:
 
     def __init__(self, search: LineSearch, known: Effects, most: int) -> None:
         self.search, self.left = search, most
+        self.of_two = _TWO if most else 0
         self.reached: list[Way] = []
         self.firsts = [edits[0] for edits in known.alike]
         like_others = {edit for edits in known.alike for edit in edits[1:]}
@@ -57,7 +61,7 @@ class InOrder:
             before: what was suspected already before the last of them.
         """
         steps, suspected = self._steps(stand, before)
-        ways = [(*stand, step.edit) for step in steps]
+        ways = [(*stand, *step.edits) for step in steps]
         for way in ways[:_TRIED]:
             repair = self._verdict(way)
             if repair is not None:
@@ -96,12 +100,34 @@ class InOrder:
                 some = [x for x in every if id(x.node) in suspected and not _at(x, placed)]
                 new = [x for x in some if id(x.node) not in before]
                 old = [x for x in some if id(x.node) in before]
-                steps = self._looked(here, new) or self._looked(here, old)
-                if not steps:  # what is made of wrong numbers alone is wrong by nothing else
-                    steps = self._looked(here, [x for x in every if self._is_of_data(x)])
+                # what is made of wrong numbers alone is wrong by nothing else
+                data = [x for x in every if self._is_of_data(x)]
+                steps: list[FirstStep] = []
+                for few in (new, old, data):
+                    steps += self._looked(here, few)
+                    if any(step.whole for step in steps):
+                        break
+                else:
+                    steps = self._looked_at_two(here, some) or steps
+                steps.sort(key=lambda step: (not step.whole, step.cost))
         except NoProgramError:
             return [], before
         return steps, suspected
+
+    def _looked_at_two(self, here: LineSearch, some: list[ProgramEdit]) -> list[FirstStep]:
+        """Two of some edits that are a step together: a statement may have two slips."""
+        two = TwoOfOne(here, some, self.of_two)
+        steps: list[FirstStep] = []
+        for pairs in two.pairs():
+            witnesses = Witnesses(here)
+            steps = witnesses.steps_of_two(pairs, self.of_two)
+            self.of_two -= witnesses.done
+            self.search.work.done += witnesses.done
+            if steps:
+                break
+        self.of_two -= two.done
+        self.search.work.done += two.done
+        return steps
 
     def _is_of_data(self, edit: ProgramEdit) -> bool:
         parts = self.search.trial.program.parts

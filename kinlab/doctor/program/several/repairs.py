@@ -17,6 +17,7 @@ from kinlab.doctor.program.places import DATA, ProgramEdit, changed
 from kinlab.doctor.program.search.repair import LineSearch, ProgramRepair
 from kinlab.doctor.program.several.effects import Chosen, Effects, Way, effects_of
 from kinlab.doctor.program.several.in_order import InOrder
+from kinlab.doctor.program.several.in_stages import InStages
 from kinlab.doctor.program.several.rest import AtRest
 from kinlab.doctor.program.several.together import TriedTogether
 from kinlab.doctor.program.several.witnesses import Witnesses
@@ -49,6 +50,8 @@ _WATCHING = 5
 """Of the work for single edits, the part for watching statements."""
 _IN_ORDER = 30_000_000
 """Work for one slip after another."""
+_IN_STAGES = 50_000_000
+"""Work for slips of one part of an answer after another."""
 _ALONE, _IN_LANES, _WAYS = 3_000_000, 12_000_000, 2
 """Work for the last one beside them, run alone, and in lanes after that; of how many ways."""
 _BESIDE_TWO = 50_000_000
@@ -119,13 +122,21 @@ class _Several:
         if found:
             return self._settled(search, found)
         together = TriedTogether(search, known)
+        stages = InStages(search, known, together, 0 if search.stand else _IN_STAGES)
+        found = tried.of_ways(stages.ways(two=False, before=in_order.reached))
+        if found:
+            return self._settled(search, found)
         for some in together.pairs():  # what holds for this arm alone is not told, others may be
             found = tried.likeliest(known, some)
             if found:
                 break
+        if not found and not search.stand:
+            found = tried.likeliest(known, together.beside_lanes())
         if not found and together.usable and not search.stand:
             found = tried.likeliest(known, known.adding_up(3) + together.threes())
             found = found or tried.likeliest(known, together.any_three())
+        found = found or tried.of_ways(stages.ways(two=True, before=in_order.reached))
+        found = found or self._last(search, stages.reached[:_WAYS])
         if found:
             return self._settled(search, found)
         most = 1 if together.thorough else _STEPS - 1
@@ -133,7 +144,7 @@ class _Several:
         if not firsts:
             edits = [edits[0] for edits in known.alike]
             steps = Witnesses(search).steps(edits, search.most // _WATCHING)
-            firsts = [(edit,) for edit in _apart([step.edit for step in steps])[:most]]
+            firsts = [(edit,) for edit in _apart([step.edits[0] for step in steps])[:most]]
         found = self._after(search, firsts)
         if found:
             return found
@@ -288,6 +299,11 @@ class _Tried:
             if way != fitting[0] and self._fits(way):
                 fitting.append(way)
         return self._ranked(fitting)
+
+    def of_ways(self, ways: list[Way]) -> list[ProgramRepair]:
+        """What combinations that fit at some states make of it, the likeliest first."""
+        fitting = [way for way in ways if self._fits(way)]
+        return self._ranked(fitting) if fitting else []
 
     def _cost(self, way: Way) -> int:
         return max(self.search.work.of(edit) for edit in way)

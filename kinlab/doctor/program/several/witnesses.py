@@ -10,7 +10,8 @@ from __future__ import annotations
 import ast
 import copy
 from bisect import bisect_left
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -21,8 +22,9 @@ from kinlab.doctor.bytecode.syntax import called, copied, nodes
 from kinlab.doctor.glossary.textbook import Glossary
 from kinlab.doctor.program.grounds.evidence import zeros_and_ones
 from kinlab.doctor.program.grounds.suspects import TERM
-from kinlab.doctor.program.places import ProgramEdit
+from kinlab.doctor.program.places import ProgramEdit, changed
 from kinlab.doctor.program.search.repair import LineSearch
+from kinlab.doctor.program.several.effects import Way
 from kinlab.doctor.program.trial import FieldChange, NoProgramError
 from kinlab.doctor.program.variants import Variants
 from kinlab.tolerances import TOLERANCES
@@ -42,15 +44,17 @@ _WEIGHTS = np.random.default_rng(5).uniform(0.5, 1.5, 36)
 
 @dataclass(frozen=True)
 class FirstStep:
-    """An edit with which statements give what a textbook has.
+    """Edits with which statements give what a textbook has.
 
     Attributes:
-        edit: the edit.
-        cost: how far-fetched it is, less what speaks for it.
+        edits: one, or two where neither does alone.
+        cost: how far-fetched they are, less what speaks for them.
+        whole: whether a statement is right each time that it runs, not some times more alone.
     """
 
-    edit: ProgramEdit
+    edits: tuple[ProgramEdit, ...]
     cost: float
+    whole: bool = True
 
 
 @dataclass
@@ -61,13 +65,17 @@ class Watched:
         count: how often it ran.
         good: what all that it gave is: 2 of a textbook's quantities, 1 some terms of these as well,
             0 nothing known; None where anything could be that.
+        fine: how often it was one of a textbook's quantities.
     """
 
     count: int = 0
     good: int | None = None
+    fine: int = 0
 
 
 _NEVER = Watched()
+_QUANTITY = 2
+"""What is a textbook's, and no term alone."""
 
 
 class Witnesses:
@@ -101,6 +109,28 @@ class Witnesses:
 
         The likeliest come first, those with which more is right as if they were likelier.
         """
+        numbers = {(id(holder), field): n for n, (holder, field) in enumerate(self.places)}
+        watched = {edit: _watched(edit, numbers) for edit in edits}
+        variants = Variants(self.search.trial, [*watched.values()])
+
+        def stands(way: Way) -> AbstractContextManager[None]:
+            one = watched[way[0]]
+            return self.search.trial.changed({one.part}, one.changes, variants.of(one))
+
+        return self._looked([(edit,) for edit in edits], stands, most)
+
+    def steps_of_two(self, pairs: Sequence[Way], most: int) -> list[FirstStep]:
+        """The same of two edits at a time."""
+        numbers = {(id(holder), field): n for n, (holder, field) in enumerate(self.places)}
+
+        def stands(way: Way) -> AbstractContextManager[None]:
+            return changed(self.search.trial, tuple(_watched(edit, numbers) for edit in way))
+
+        return self._looked(pairs, stands, most)
+
+    def _looked(
+        self, ways: Sequence[Way], stands: Callable[[Way], AbstractContextManager[None]], most: int
+    ) -> list[FirstStep]:
         trial = self.search.trial
         if not self.grounds.known or not self.places:
             return []
@@ -108,23 +138,21 @@ class Witnesses:
         with trial.changed({*range(len(trial.trees))}, self._saws()):
             before = self._right()
             self.known, self.watching = {}, True
-            numbers = {(id(holder), field): n for n, (holder, field) in enumerate(self.places)}
-            watched = [_watched(edit, numbers) for edit in edits]
-            variants = Variants(trial, watched)
-            for edit, one in zip(edits, watched, strict=True):
-                self.done += self.cost_of(edit)
+            for way in ways:
+                self.done += sum(map(self.cost_of, way))
                 if self.done > (most if found else most // _FRUITLESS):
                     break
                 try:
-                    with trial.changed({one.part}, one.changes, variants.of(one)):
+                    with stands(way):
                         after = self._right()
                 except NoProgramError:
                     continue
                 gained = min(_gained(before, after), _MANY)
-                if gained:
-                    cost = self.search.likely(edit) - _STATEMENT * gained
-                    found.append(FirstStep(edit, cost))
-        return sorted(found, key=lambda step: step.cost)
+                some = 0 if gained else min(_gained_sometimes(before, after), _MANY)
+                if gained or some:
+                    cost = sum(map(self.search.likely, way)) - _STATEMENT * (gained + some)
+                    found.append(FirstStep(way, cost, bool(gained)))
+        return sorted(found, key=lambda step: (not step.whole, step.cost))
 
     def cost_of(self, edit: ProgramEdit) -> int:
         """What watching the program with an edit amounts to."""
@@ -151,8 +179,9 @@ class Witnesses:
     def _see(self, n: int, value: Any) -> Any:
         told = self.told.setdefault(n, Watched())
         told.count += 1
-        if told.good != 0 and (good := self._textbook(value)) is not None:
+        if (good := self._textbook(value)) is not None:
             told.good = good if told.good is None else min(good, told.good)
+            told.fine += good == _QUANTITY
         return value
 
     def _textbook(self, value: Any) -> int | None:
@@ -205,6 +234,17 @@ def _gained(before: dict[int, Watched], after: dict[int, Watched]) -> int:
         if old.good and now.good == 0:
             return 0
         gained += (now.good or 0) > (old.good or 0) and now.count >= old.count > 0
+    return gained
+
+
+def _gained_sometimes(before: dict[int, Watched], after: dict[int, Watched]) -> int:
+    """How many times more statements are right with an edit; 0 where any is right less often."""
+    gained = 0
+    for n, now in after.items():
+        old = before.get(n, _NEVER)
+        if (old.good and now.good == 0) or now.fine < old.fine or now.count != old.count:
+            return 0
+        gained += now.fine - old.fine
     return gained
 
 

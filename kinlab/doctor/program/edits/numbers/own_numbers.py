@@ -5,14 +5,14 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import combinations
+from itertools import chain, combinations
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import called
+from kinlab.doctor.bytecode.syntax import called, nodes
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.numbers.as_the_arm import typed
 from kinlab.doctor.program.edits.numbers.data import NumberPlace, measured, numbers
@@ -36,6 +36,10 @@ _OF_POINTS = 1.14
 """Cost of a point's coordinate for a number."""
 _CONSTANT = 1.06
 """Cost of the part of a joint's coordinate that does not move, and of gravity."""
+_MOVED, _LEFT_OUT = 1.1, 4
+"""Cost of a transform that is missing; lengths of which one may be its."""
+_TRANSFORMS = ((4, 4), (3, 3))
+"""Shapes of transforms, and of rotations."""
 _MOST = 16
 """Numbers of one kind of which any may be meant."""
 
@@ -94,6 +98,11 @@ def of_own_numbers(
             for here in places(part, tree):
                 yield from _missing(here, observed, lengths)
                 yield from _instead_of_zero(here, trial, left_out)
+    ends = (np.ravel(np.asarray(end)[:3, 3]) for end in (table.tool, table.base))
+    arm = {abs(float(x)) for x in (*(x for k in table.links for x in (k.a, k.d)), *chain(*ends))}
+    unnamed = [x for x in sorted(arm) if x and not among(x, given)]
+    yield from _moves_left_out(trial, observed, table, unnamed)
+    yield from _begun_at_the_base(trial, observed, table)
 
 
 def _are(both: tuple[float, float], pair: tuple[float, float]) -> bool:
@@ -232,6 +241,57 @@ def _instead_of_zero(here: Here, trial: Trial, lengths: Sequence[float]) -> Iter
     if measured(parent) or (isinstance(parent, ast.Call) and called(parent) in own):
         for length in lengths:
             yield replace(here.instead(number(length), "number", 1.12), of_the_arm=True)
+
+
+def _moves_left_out(
+    trial: Trial, observed: Observed, table: DHTable, lengths: Sequence[float]
+) -> Iterator[ProgramEdit]:
+    """A transform that is missing: of a length that the program names nowhere, of an angle of the
+    arm's that does not move: ``@ trans(0, 0, 0.263)``, ``rotz(pi/2) @``."""
+    calls: dict[str, ast.Call] = {}
+    for tree in trial.trees:
+        for node in nodes(tree):
+            if isinstance(node, ast.Call) and observed.shape(node) in _TRANSFORMS and node.args:
+                zeros = sum(isinstance(x, ast.Constant) and x.value == 0 for x in node.args)
+                if 2 * zeros >= len(node.args) or len(node.args) == 1:
+                    calls.setdefault(ast.unparse(node.func), node)
+    angles = {float(x) for k in table.links for x in (k.alpha, k.theta) if x}
+    sizes = {1: [typed(x) for x in sorted(angles)]}
+    others = [number(x) for x in lengths[:_LEFT_OUT]]
+    moves = [
+        (observed.shape(call), ast.Call(call.func, given, []))
+        for call in calls.values()
+        for k in range(len(call.args))
+        for x in sizes.get(len(call.args), others)
+        for given in [[x if n == k else number(0) for n in range(len(call.args))]]
+    ]
+    for part, tree in enumerate(trial.trees) if moves else ():
+        for here in places(part, tree):
+            set_ = isinstance(here.parent, ast.Assign | ast.Return) and here.field == "value"
+            for shape, move in moves if set_ else ():
+                if observed.shape(here.node) == shape:
+                    for both in ((here.node, move), (move, here.node)):
+                        new = ast.BinOp(both[0], ast.MatMult(), both[1])
+                        edit = here.instead(new, "missing matrix", _MOVED)
+                        yield replace(edit, of_the_arm=True)
+
+
+def _begun_at_the_base(trial: Trial, observed: Observed, table: DHTable) -> Iterator[ProgramEdit]:
+    """The transform of the arm's base for a unit matrix, where it is nothing but signs."""
+    base = np.asarray(table.base, dtype=float)
+    signs = np.diag(base)
+    if not np.array_equal(base, np.diag(np.sign(signs))) or (signs == 1).all():
+        return
+    row = ast.List([number(x) for x in signs.tolist()], ast.Load())
+    for part, tree in enumerate(trial.trees):
+        for here in places(part, tree):
+            node, seen = here.node, observed.of(here.node)
+            if not isinstance(node, ast.Call) or called(node) not in ("eye", "identity"):
+                continue
+            if seen is not None and seen.shape == base.shape and "np" in trial.space:
+                own = ast.Attribute(ast.Name("np", ast.Load()), "diag", ast.Load())
+                edit = here.instead(ast.Call(own, [row], []), "number", _MOVED)
+                yield replace(edit, of_the_arm=True)
 
 
 def may_be_gravity(value: float) -> bool:

@@ -34,6 +34,7 @@ class Knowledge:
         lists: names of lists, by the shapes of their entries.
         attributes: of objects, by their shapes.
         keys: of dictionaries, by the shapes of what is there.
+        idle_keys: of these, those that the program never asks for.
         counters: names that count.
         ranges: what they count through.
         idle_attributes: of objects those that no function uses.
@@ -74,8 +75,9 @@ class Knowledge:
         gathered = self._enter_loops(trial, tree)
         self._members = members.members_of(trial, observed)
         self.attributes, self.keys = self._members.attributes, self._members.keys
+        self.idle_keys = {*self.keys} - self._members.asked
         self.shapes |= of_names.given(trial, part, observed)
-        self._read_expressions(tree, gathered)
+        self._read_expressions(trial, tree, gathered)
         self._tell_names(tree)
         self._count(trial, tree)
         self._know_numbers(trial)
@@ -120,10 +122,11 @@ class Knowledge:
         self.counters += [name for name in sorted(self._counted) if name not in self.counters]
         return inner - outer
 
-    def _read_expressions(self, tree: ast.AST, gathered: set[str]) -> None:
+    def _read_expressions(self, trial: Trial, tree: ast.AST, gathered: set[str]) -> None:
         """Its expressions as pieces, and the shapes of its names.
 
         Args:
+            trial: the program.
             tree: the part.
             gathered: names that are known in comprehensions alone.
         """
@@ -132,7 +135,7 @@ class Knowledge:
                 self._read_expression(node, gathered)
             if isinstance(node, ast.Assign) and len(node.targets) == 1:
                 target, value = node.targets[0], node.value
-                for name, shape in of_names.unpacked(target, value, self.observed):
+                for name, shape in of_names.unpacked(target, value, trial, self.observed):
                     self.shapes.setdefault(name, shape)
 
     def _read_expression(self, node: ast.expr, gathered: set[str]) -> None:

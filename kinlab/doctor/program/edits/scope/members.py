@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from kinlab.doctor.bytecode.syntax import copied, nodes
+from kinlab.doctor.bytecode.syntax import called, copied, nodes
 from kinlab.doctor.program.edits.numbers.data import is_object
 from kinlab.doctor.program.edits.scope.forms import entry, member, named
 from kinlab.doctor.program.edits.scope.pieces import Pieces, Sized
@@ -24,13 +24,19 @@ class Members:
     Attributes:
         attributes: of objects, by their shapes.
         keys: of dictionaries, by the shapes of what is there.
+        asked: the keys that a program asks for; what others hold is never used.
     """
 
     attributes: dict[str, Shape] = field(default_factory=dict)
     keys: dict[str, Shape] = field(default_factory=dict)
+    asked: set[str] = field(default_factory=set)
 
     def read(self, node: ast.AST, observed: Observed) -> None:
         """What a line of the program asks an object for, or sets."""
+        for name, value in _entries(node):
+            given = observed.shape(value)
+            if given is not None:
+                self.keys.setdefault(name, given)
         if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Attribute):
             given = observed.shape(node.value)  # what is set and used nowhere
             if given is not None:
@@ -46,6 +52,7 @@ class Members:
         key = node.slice if isinstance(node, ast.Subscript) else None
         if isinstance(key, ast.Constant) and isinstance(key.value, str):
             self.keys.setdefault(key.value, shape)
+            self.asked.add(key.value)
 
     def hold(self, held: Any) -> None:
         """What an object or a dictionary holds, or the first of a list of them."""
@@ -75,6 +82,16 @@ class Members:
                 for name, own in self.keys.items():
                     if own == shape and (name != key.value or one is not node.value):
                         yield entry(copied(one), ast.Constant(name))
+
+
+def _entries(node: ast.AST) -> Iterator[tuple[str, ast.expr]]:
+    """What a dictionary is made of: ``{"r": r}``, ``dict(r=r)``."""
+    if isinstance(node, ast.Dict):
+        for key, value in zip(node.keys, node.values, strict=True):
+            if isinstance(key, ast.Constant) and isinstance(key.value, str):
+                yield key.value, value
+    elif isinstance(node, ast.Call) and called(node) == "dict":
+        yield from ((word.arg, word.value) for word in node.keywords if word.arg)
 
 
 def members_of(trial: Trial, observed: Observed) -> Members:

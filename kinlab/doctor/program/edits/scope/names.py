@@ -5,6 +5,8 @@ from __future__ import annotations
 import ast
 from collections.abc import Container, Iterator
 
+import numpy as np
+
 from kinlab.doctor.bytecode.syntax import called, names, nodes
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import paired
@@ -52,11 +54,18 @@ def _passed(target: ast.expr, over: ast.expr, observed: Observed) -> Iterator[tu
     shape = observed.shape(over)
     if not shape or (isinstance(over, ast.Call) and called(over) in ("range", "reversed")):
         return
-    if isinstance(target, ast.Name) and (shape[1:] or not _whole(over, observed)):
+    if isinstance(target, ast.Name) and (shape[1:] or not _counts(over, observed)):
         yield target.id, shape[1:]
     for one in parts if len(shape) > 1 else ():
         if isinstance(one, ast.Name):
             yield one.id, shape[2:]
+
+
+def _counts(node: ast.AST, observed: Observed) -> bool:
+    """Whether entries are whole numbers, and no signs: ``for i, side in enumerate([1, -1])``."""
+    seen = observed.of(node)
+    values = {float(x) for one in seen.values for x in np.ravel(one)} if seen is not None else set()
+    return _whole(node, observed) and not (values and values <= {1.0, -1.0})
 
 
 def _whole(node: ast.AST, observed: Observed) -> bool:
@@ -96,7 +105,9 @@ def first_lines(tree: ast.AST) -> dict[str, int]:
     return found
 
 
-def unpacked(target: ast.expr, value: ast.expr, observed: Observed) -> Iterator[tuple[str, Shape]]:
+def unpacked(
+    target: ast.expr, value: ast.expr, trial: Trial, observed: Observed
+) -> Iterator[tuple[str, Shape]]:
     """The names that an assignment sets, each with the shape of its value."""
     for name, part in _set(target, value):
         shape = observed.shape(part)
@@ -107,6 +118,23 @@ def unpacked(target: ast.expr, value: ast.expr, observed: Observed) -> Iterator[
         for one in target.elts:
             if isinstance(one, ast.Name) and shape:
                 yield one.id, shape[1:]
+        given = _given_by(value, trial)
+        entries = given.elts if given is not None and len(given.elts) == len(target.elts) else []
+        for one, entry in zip(target.elts, entries, strict=False):
+            shape = observed.shape(entry)
+            if isinstance(one, ast.Name) and shape is not None:
+                yield one.id, shape
+
+
+def _given_by(value: ast.expr, trial: Trial) -> ast.Tuple | None:
+    """The entries that a function of the program's gives, where it is called."""
+    name = called(value) if isinstance(value, ast.Call) else ""
+    for part, tree in zip(trial.program.parts, trial.trees, strict=True):
+        if name and part.name == name:
+            given = [x.value for x in nodes(tree) if isinstance(x, ast.Return)]
+            last = given[-1] if given else None
+            return last if isinstance(last, ast.Tuple) else None
+    return None
 
 
 def set_by(tree: ast.AST, functions: Container[str]) -> set[str]:

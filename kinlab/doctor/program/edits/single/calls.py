@@ -18,6 +18,8 @@ _DIAGONAL = 1.02
 """Cost of the main diagonal for another."""
 _ARGUMENTS, _APART = 4, 0.03
 """The same of arguments; what it costs more of those that do not stand side by side."""
+_ARCS = ("arcsin", "asin", "arccos", "acos")
+"""Functions that do not tell the quadrant."""
 _FAMILIES = (
     ("zeros", "ones"),
     ("array", "asarray", "cumsum"),
@@ -75,6 +77,8 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
         wholes = [getattr(one, "value", one) for one in node.args]
         yield here.within(node, "args", wholes, "loop", 1.08)
     yield from _other_function(here, name)
+    if name in _ARCS and len(node.args) == 1:
+        yield from _of_two(here, scope, name)
     if isinstance(node.func, ast.Attribute) and name in ("append", "insert") and node.args:
         first = [ast.Constant(0)] if name == "append" else []
         method = ast.Attribute(node.func.value, "insert" if first else "append", ast.Load())
@@ -111,6 +115,21 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
         if name == "solve" and len(plain) == 2:
             product = ast.BinOp(plain[0], ast.MatMult(), plain[1])
             yield here.instead(product, "inverse", 1.25)
+
+
+def _of_two(here: Here, scope: Scope, name: str) -> Iterator[ProgramEdit]:
+    """The angle of both sine and cosine: ``atan2(s3, c3)`` for ``asin(s3)``."""
+    node, whole = here.node, "arctan2" if name.startswith("arc") else "atan2"
+    if isinstance(node.func, ast.Attribute):
+        own: ast.expr = ast.Attribute(node.func.value, whole, ast.Load())
+    elif callable(scope.space.get(whole)):
+        own = ast.Name(whole, ast.Load())
+    else:
+        return
+    for text, other in scope.simple(()):
+        if text != ast.unparse(node.args[0]):
+            both = [node.args[0], other] if "sin" in name else [other, node.args[0]]
+            yield here.instead(ast.Call(own, both, []), "function", 1.1 + scope.dear(other))
 
 
 def _cut(node: ast.expr) -> str:

@@ -15,8 +15,9 @@ from kinlab.doctor.program.edits.single.whole import plus, shifted, value_of, wh
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import Here, ProgramEdit, number
 
-_FEW = 8
-"""Keys among which a wrong one is looked for early."""
+_IDLE, _FEW = 1.0, 8
+"""Cost of a key that the program never asks for; keys among which a wrong one is looked for early.
+"""
 _LONGEST = 6
 """Entries of a list of which any two may have been exchanged."""
 _THREE = 3
@@ -123,7 +124,8 @@ def _of_key(here: Here, key: ast.Constant, scope: Scope) -> Iterator[ProgramEdit
     own, cost = str(key.value), 1.05 if len(scope.keys) <= _FEW else 1.15
     for other, shape in scope.keys.items():
         if other != own and shape == scope.keys.get(own):
-            yield here.within(key, "value", other, "name", cost)
+            less = _IDLE if other in scope.idle_keys else cost
+            yield here.within(key, "value", other, "name", less)
 
 
 def keys_of(node: ast.Subscript) -> list[tuple[Any, Any, ast.expr]]:

@@ -19,6 +19,8 @@ _PAIR = 2
 """Sides of a matrix, factors that change places, arguments with a diagonal."""
 _HALVES, _TYPED = (2, 0.5), 1.045
 """Factors that stand in front, and the cost of one that does not belong there."""
+_DIVIDED = 1.2
+"""Cost of a quotient for a product, or a product for a quotient."""
 DIAGONALS = ("tril", "triu", "eye", "diag")
 """Functions whose last argument is the number of a diagonal."""
 
@@ -99,7 +101,7 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             if isinstance(right, ast.BinOp) and isinstance(right.op, ast.Pow):
                 squared = ast.BinOp(ast.BinOp(left, op, right.left), right.op, right.right)
                 yield here.instead(squared, "parentheses", 1.12)
-            yield here.within(node, "op", ast.Div(), "factor", 1.35)
+            yield here.within(node, "op", ast.Div(), "factor", _DIVIDED)
             if all(shape for shape in matrices):
                 yield here.within(node, "op", ast.MatMult(), "product", 1.1)
             if matrices[0] == matrices[1] and matrices[0]:
@@ -118,7 +120,7 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
                 below = ast.BinOp(left.right, ast.Mult(), right)
                 yield here.instead(ast.BinOp(left.left, ast.Div(), below), "parentheses", 1.2)
         else:
-            yield here.within(node, "op", ast.Mult(), "factor", 1.3)
+            yield here.within(node, "op", ast.Mult(), "factor", _DIVIDED)
             yield here.instead(ast.BinOp(right, ast.Div(), left), "order", 1.3)
             if isinstance(left, ast.BinOp) and isinstance(left.op, ast.Add | ast.Sub):
                 # (a + b)/c for a + b/c

@@ -7,10 +7,10 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations
 from typing import Any
 
-from kinlab.doctor.bytecode.syntax import called, shallow
+from kinlab.doctor.bytecode.syntax import called, copied, shallow
 from kinlab.doctor.program.edits.numbers.data import moved_on, other_words
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import Here, ProgramEdit
+from kinlab.doctor.program.places import Here, ProgramEdit, number
 
 _LONGEST = 6
 """Entries of a list of which any two may have been exchanged."""
@@ -26,6 +26,8 @@ _SLIDE = 1.08
 """Cost of a slide's column for a hinge's."""
 _ONES = 1.14
 """Cost of ones for a row with zeros."""
+_LIKE_ANOTHER = 1.06
+"""Cost of an entry that is made as another one of its row is."""
 _HALVED = 1.04
 """Cost of the halves of a twist, or of a wrench, for one another."""
 
@@ -41,6 +43,7 @@ def of_sequence(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
     yield from _between(here, elements)
     yield from _signs_of_two(here, elements)
     yield from _laid_out(here, elements)
+    yield from _like_another(here, elements)
     turned = [_opposite(one) for one in elements]
     if sum(one is not old for one, old in zip(turned, elements, strict=True)) >= _PAIR:
         unpacked = isinstance(here.node, ast.Tuple) and isinstance(here.parent, ast.Assign)
@@ -58,6 +61,34 @@ def of_sequence(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
     if len(points) == len(elements) > _PAIR:  # those of the frames before, of which one is the base
         base: ast.expr = ast.parse("np.zeros(3)", mode="eval").body
         yield here.within(here.node, "elts", [base, *elements[:-1]], "shifted", 1.13)
+    named = [observed.shape(one) or () for one in elements if isinstance(one, ast.Name)]
+    if len(elements) > _PAIR and named in ([(4, 4)] * len(elements), [(3, 3)] * len(elements)):
+        base = ast.parse(f"np.eye({named[0][0]})", mode="eval").body
+        yield here.within(here.node, "elts", [base, *elements[:-1]], "shifted", 1.1)
+
+
+def _like_another(here: Here, rows: Sequence[ast.expr]) -> Iterator[ProgramEdit]:
+    """An entry as another one is, with its own index: ``[F[0], f[1] + F[1]]``."""
+    for k, own in enumerate(rows):
+        for j, other in enumerate(rows):
+            new = _Counted(j, k).visit(copied(other)) if j != k else own
+            if ast.dump(new) != ast.dump(own) and ast.dump(new) != ast.dump(other):
+                kind = "missing term" if ast.unparse(own) in ast.unparse(new) else "name"
+                yield here.within(here.node.elts, k, new, kind, _LIKE_ANOTHER)
+
+
+class _Counted(ast.NodeTransformer):
+    """Another index for one: ``F[1]`` for ``F[0]``."""
+
+    def __init__(self, old: int, new: int) -> None:
+        self.old, self.new = old, new
+
+    def visit_Subscript(self, node: ast.Subscript) -> ast.expr:
+        self.generic_visit(node)
+        key = node.slice
+        if isinstance(key, ast.Constant) and type(key.value) is int and key.value == self.old:
+            return ast.Subscript(node.value, number(self.new), node.ctx)
+        return node
 
 
 _LAYOUTS = (
