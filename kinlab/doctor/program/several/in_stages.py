@@ -16,10 +16,12 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.derivations.parts import MOVING
+from kinlab.doctor.program.places import changed
 from kinlab.doctor.program.search.asked import Asked
 from kinlab.doctor.program.search.repair import LineSearch
 from kinlab.doctor.program.several.effects import Effects, Way
 from kinlab.doctor.program.several.together import TriedTogether
+from kinlab.doctor.program.trial import NoProgramError
 from kinlab.errors import KinlabError
 
 _STATES = 2
@@ -34,6 +36,8 @@ _DEEPEST, _KEPT, _SIBLINGS = 3, 300, 30
 """Edits that may stand; ways that are kept; edits of one effect of which each is tried."""
 _TRUSTED = 0.2
 """What it speaks for an edit that a search has gone on from it."""
+_FEW = 400
+"""Edits of which those that lanes cannot follow are run alone."""
 _BITS = 63
 """Numbers of a part by which pairs are told to be impossible beforehand."""
 
@@ -90,12 +94,15 @@ class InStages:
             self.costs[k] -= _TRUSTED * any(id(edit) in trusted for edit in alike)
         lanes, work = self.together.lanes, self.together.lanes.work
         ways: list[Chosen] = [()]
+        first: _Part | None = None
         try:
             for part in self.parts:
                 more = self._with_part(part, ways, two)
                 if not more:
-                    self.reached = [*map(self._way, ways)] if ways != [()] else []
+                    begun = [] if ways == [()] else [*map(self._way, ways)][:_WAYS]
+                    self.reached = self._alone(first or part)[:_WAYS] + begun
                     return []
+                first = first or (part if more != [()] else None)
                 ways = more
         finally:
             lanes.states = self.states
@@ -132,6 +139,22 @@ class InStages:
         if rows is None:
             return []
         return self._sure(part, stand, self.together.sound[self._right(rows)][:, None])[:, 0]
+
+    def _alone(self, part: _Part) -> list[Way]:
+        """Single edits that lanes cannot follow with which a part is right, the likeliest first."""
+        found: list[Way] = []
+        unfollowed = set(range(min(_FEW, len(self.costs)))) - {*map(int, self.together.sound)}
+        for k in sorted(unfollowed):
+            way = self._way((k,))
+            self.left -= self.search.work.of(way[0])
+            try:
+                with changed(self.search.trial, way):
+                    values = part.asked.values(part.asked.first)
+            except NoProgramError:
+                continue
+            if values is not None and self._right(self._gaps(part, values[None])).all():
+                found.append(way)
+        return found
 
     def _sure(self, part: _Part, stand: Chosen, some: Any) -> Any:
         """Those of some edits, (C, E), with which a part is right at all its states."""
@@ -220,9 +243,14 @@ class InStages:
         values = None if found is None else part.asked.of_lanes(found)
         if values is None:
             return None
-        wanted = part.asked.wanted[: values.shape[1]]
+        return self._gaps(part, values)
+
+    @staticmethod
+    def _gaps(part: _Part, values: Array) -> Array:
+        """What is missing in answers, (C, S, ...)."""
+        wanted = part.asked.wanted[part.asked.first][: values.shape[1]]
         gap = (values - wanted) / part.asked.scale[: values.shape[1]]
-        return np.asarray(gap[:, :, part.mask].reshape(len(chosen), -1))
+        return np.asarray(gap[:, :, part.mask].reshape(len(values), -1))
 
     def _right(self, rows: Array) -> Any:
         """Which rows have nothing missing."""

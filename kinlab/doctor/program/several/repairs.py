@@ -50,6 +50,8 @@ _WATCHING = 5
 """Of the work for single edits, the part for watching statements."""
 _IN_ORDER = 30_000_000
 """Work for one slip after another."""
+_REACHED = 25_000_000
+"""Work for the last one beside those with which a part of the answer is right."""
 _IN_STAGES = 50_000_000
 """Work for slips of one part of an answer after another."""
 _ALONE, _IN_LANES, _WAYS = 3_000_000, 12_000_000, 2
@@ -136,7 +138,8 @@ class _Several:
             found = tried.likeliest(known, known.adding_up(3) + together.threes())
             found = found or tried.likeliest(known, together.any_three())
         found = found or tried.of_ways(stages.ways(two=True, before=in_order.reached))
-        found = found or self._last(search, stages.reached[:_WAYS])
+        self.left = max(self.left, 1)
+        found = found or self._last(search, stages.reached[: _WAYS + 1], _REACHED)
         if found:
             return self._settled(search, found)
         most = 1 if together.thorough else _STEPS - 1
@@ -167,12 +170,20 @@ class _Several:
             found = self._settled(search, found)
         return found
 
-    def _last(self, search: LineSearch, ways: list[Way]) -> list[ProgramRepair]:
-        """The one edit more with which all is right, beside those of one of some ways."""
+    def _last(
+        self, search: LineSearch, ways: list[Way], alone: int = _ALONE
+    ) -> list[ProgramRepair]:
+        """The one edit more with which all is right, beside those of one of some ways.
+
+        Args:
+            search: the program.
+            ways: edits that stand.
+            alone: work for those that are run alone, beside which further ones are run in lanes.
+        """
         for way in ways if self.left > 0 else ():
             with changed(search.trial, way):
                 here = _beside(search, way)
-                here.most = _ALONE
+                here.most = alone
                 here.in_lanes = _IN_LANES if len(way) < _DEEPEST else _BESIDE_TWO
                 found = here.singles()
                 self.left -= min(here.work.done, _IN_LANES) // _WAYS

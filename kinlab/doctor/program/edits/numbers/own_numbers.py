@@ -288,8 +288,11 @@ def _begun_at_the_base(trial: Trial, observed: Observed, table: DHTable) -> Iter
             node, seen = here.node, observed.of(here.node)
             if not isinstance(node, ast.Call) or called(node) not in ("eye", "identity"):
                 continue
-            if seen is not None and seen.shape == base.shape and "np" in trial.space:
-                own = ast.Attribute(ast.Name("np", ast.Load()), "diag", ast.Load())
+            library: ast.expr = ast.Name("np", ast.Load())
+            library = node.func.value if isinstance(node.func, ast.Attribute) else library
+            own = ast.Attribute(library, "diag", ast.Load())
+            known = "np" in trial.space or isinstance(node.func, ast.Attribute)
+            if known and seen is not None and seen.shape == base.shape:
                 edit = here.instead(ast.Call(own, [row], []), "number", _MOVED)
                 yield replace(edit, of_the_arm=True)
 
