@@ -7,7 +7,7 @@ next such statement: three slips of a recursion take three looks, not all threes
 
 from __future__ import annotations
 
-from kinlab.doctor.program.grounds.suspects import behind
+from kinlab.doctor.program.grounds.suspects import behind, suspects
 from kinlab.doctor.program.places import DATA, ProgramEdit, changed
 from kinlab.doctor.program.search.repair import LineSearch, ProgramRepair
 from kinlab.doctor.program.several.effects import Effects, Way
@@ -21,7 +21,7 @@ _WAYS, _TRIED = 2, 12
 """Edits from which is gone on at first, and of which it is looked whether all is right."""
 _EACH = 12_000_000
 """Work for one look."""
-_TWO = 40_000_000
+_TWO = 24_000_000
 """Work for two edits that are a step together."""
 _LOOKING = 700_000
 """What watching a program anew amounts to, beside running it."""
@@ -98,6 +98,9 @@ class InOrder:
                 placed = {id(change.holder) for edit in stand for change in edit.changes}
                 every = self.edits if stand else self.firsts
                 some = [x for x in every if id(x.node) in suspected and not _at(x, placed)]
+                # what is wrong by what it is made of comes before what may have a share in it
+                wrong = suspects(here.trial, here.observed, here.known)
+                some.sort(key=lambda x: id(x.node) not in wrong)
                 new = [x for x in some if id(x.node) not in before]
                 old = [x for x in some if id(x.node) in before]
                 # what is made of wrong numbers alone is wrong by nothing else

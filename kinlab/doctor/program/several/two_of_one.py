@@ -22,9 +22,9 @@ from kinlab.doctor.program.several.effects import Way
 from kinlab.doctor.program.trial import NoProgramError
 from kinlab.tolerances import TOLERANCES
 
-_LIKELY = 260
+_LIKELY = 200
 """Edits of which any two are tried."""
-_VALUES = 3
+_VALUES = 2
 """Values of which it is looked for what makes them right."""
 _AT_ONCE = 8000
 """Pairs at a time."""

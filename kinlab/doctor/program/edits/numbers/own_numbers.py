@@ -268,8 +268,10 @@ def _moves_left_out(
     for part, tree in enumerate(trial.trees) if moves else ():
         for here in places(part, tree):
             set_ = isinstance(here.parent, ast.Assign | ast.Return) and here.field == "value"
-            for shape, move in moves if set_ else ():
-                if observed.shape(here.node) == shape:
+            calls_ = [x for x in nodes(here.node) if isinstance(x, ast.Call)] if set_ else []
+            there = {ast.unparse(x.func) for x in calls_}
+            for shape, move in moves if calls_ else ():
+                if observed.shape(here.node) == shape and ast.unparse(move.func) not in there:
                     for both in ((here.node, move), (move, here.node)):
                         new = ast.BinOp(both[0], ast.MatMult(), both[1])
                         edit = here.instead(new, "missing matrix", _MOVED)
