@@ -17,6 +17,8 @@ from kinlab.doctor.program.trial import NoProgramError
 
 _SLIPS = 4
 """Edits that may stand."""
+_BESIDE = 2
+"""Edits that stand beside which one more is looked for, and fewer for two more."""
 _WAYS, _TRIED = 2, 12
 """Edits from which is gone on at first, and of which it is looked whether all is right."""
 _EACH = 12_000_000
@@ -36,7 +38,7 @@ class InOrder:
         most: operations that may be done.
 
     Attributes:
-        reached: the edits that were gone on from, the longest first.
+        reached: the edits that were gone on from, two before one, and more at the end.
     """
 
     def __init__(self, search: LineSearch, known: Effects, most: int) -> None:
@@ -44,13 +46,15 @@ class InOrder:
         self.of_two = _TWO if most else 0
         self.reached: list[Way] = []
         self.firsts = [edits[0] for edits in known.alike]
-        like_others = {edit for edits in known.alike for edit in edits[1:]}
-        self.edits = [edit for edit, _values in search.tried if edit not in like_others]
+        self.like_others = [edit for edits in known.alike for edit in edits[1:]]
+        others = {*self.like_others}
+        self.edits = [edit for edit, _values in search.tried if edit not in others]
 
     def found(self) -> ProgramRepair | None:
         """The edits that make the program right, if the last of them does."""
         repair = self._from((), set())
-        self.reached.sort(key=len, reverse=True)
+        # beside two one more is looked for; a third that is not the last is rather none
+        self.reached.sort(key=lambda way: (len(way) > _BESIDE, -len(way)))
         return repair
 
     def _from(self, stand: Way, before: set[int]) -> ProgramRepair | None:
@@ -97,9 +101,12 @@ class InOrder:
                 suspected = behind(here.trial, here.observed, here.known)
                 placed = {id(change.holder) for edit in stand for change in edit.changes}
                 every = self.edits if stand else self.firsts
-                some = [x for x in every if id(x.node) in suspected and not _at(x, placed)]
-                # what is wrong by what it is made of comes before what may have a share in it
                 wrong = suspects(here.trial, here.observed, here.known)
+                # what does the same to the answer may be in another statement: in that which is
+                # wrong by what it is made of, which comes before what may have a share in it
+                alike = [x for x in self.like_others if id(x.node) in wrong]
+                some = [x for x in every if id(x.node) in suspected and not _at(x, placed)]
+                some += [x for x in alike if not _at(x, placed)]
                 some.sort(key=lambda x: id(x.node) not in wrong)
                 new = [x for x in some if id(x.node) not in before]
                 old = [x for x in some if id(x.node) in before]
@@ -111,7 +118,8 @@ class InOrder:
                     if any(step.whole for step in steps):
                         break
                 else:
-                    steps = self._looked_at_two(here, some) or steps
+                    if len(stand) < _BESIDE:
+                        steps = self._looked_at_two(here, some) or steps
                 steps.sort(key=lambda step: (not step.whole, step.cost))
         except NoProgramError:
             return [], before
