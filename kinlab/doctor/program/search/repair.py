@@ -216,20 +216,47 @@ class LineSearch:
         return found
 
     def _in_lanes(self, rest: list[ProgramEdit]) -> list[ProgramRepair]:
-        """Those of further edits that make the program right: they are run all at once."""
+        """Those of further edits that make the program right: they are run all at once.
+
+        One that calls a function of the program's would run it for its own lane alone: these are
+        run one by one, in turn with the others.
+        """
         own = self.asked.values(self.asked.first)
         if own is None:
             return []
         found: list[ProgramRepair] = []
+        parts = {part.name for part in self.trial.program.parts}
+        calling = [edit for edit in rest if _calls(edit, parts)]
+        others = [edit for edit in rest if edit not in {*calling}]
+        variants = Variants(self.trial, calling)
         for k in range(0, len(rest), _AT_ONCE):
             if self.work.done > self.in_lanes:
                 break
-            for edit, values in self._run_at_once(rest[k : k + _AT_ONCE], own):
+            told = self._run_at_once(others[k : k + _AT_ONCE], own) if k < len(others) else []
+            told += self._run_alone(calling[k // 4 : (k + _AT_ONCE) // 4], variants)
+            for edit, values in told:
                 self.tried.append((edit, values))
                 if self.asked.right(values).all():
                     with changed(self.trial, (edit,)):
                         repair = self.verdict((*self.stand, edit))
                     found += [] if repair is None else [repair]
+        return found
+
+    def _run_alone(
+        self, some: list[ProgramEdit], variants: Variants
+    ) -> list[tuple[ProgramEdit, Array]]:
+        """What edits make of the program, each run by itself."""
+        found: list[tuple[ProgramEdit, Array]] = []
+        for edit in some:
+            self.work.done += self.work.of(edit)
+            if self.work.done > self.in_lanes:
+                break
+            try:
+                with self.trial.changed({edit.part}, edit.changes, variants.of(edit)):
+                    values = self.asked.values(self.asked.first)
+            except NoProgramError:
+                continue
+            found += [] if values is None else [(edit, values)]
         return found
 
     def _run_at_once(self, some: list[ProgramEdit], own: Array) -> list[tuple[ProgramEdit, Array]]:
@@ -360,6 +387,15 @@ class LineSearch:
         if self.arms.only_here(several):
             return None
         return ProgramRepair(several, error, sum(edit.cost for edit in several))
+
+
+def _calls(edit: ProgramEdit, functions: set[str]) -> bool:
+    """Whether an edit puts a call of one of some functions in."""
+    inner = (x for c in edit.changes if isinstance(c.new, ast.expr) for x in nodes(c.new))
+    put = [called(x) for x in inner if isinstance(x, ast.Call)]
+    old = nodes(edit.node) if edit.part != DATA else []
+    there = [called(x) for x in old if isinstance(x, ast.Call)]
+    return sum(x in functions for x in put) > sum(x in functions for x in there)
 
 
 def _more_than(factor: ProgramEdit, edit: ProgramEdit) -> bool:
