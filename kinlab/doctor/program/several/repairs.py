@@ -138,8 +138,9 @@ class _Several:
             found = tried.likeliest(known, known.adding_up(3) + together.threes())
             found = found or tried.likeliest(known, together.any_three())
         found = found or tried.of_ways(stages.ways(two=True, before=in_order.reached))
-        self.left = max(self.left, 1)
+        left, self.left = self.left, 1
         found = found or self._last(search, stages.reached[: _WAYS + 1], _REACHED)
+        self.left = left
         if found:
             return self._settled(search, found)
         most = 1 if together.thorough else _STEPS - 1
