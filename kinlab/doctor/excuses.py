@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -17,7 +17,7 @@ from kinlab.doctor.confusions.centres import as_there, centres_elsewhere
 from kinlab.doctor.derivations.words import together
 from kinlab.doctor.derived import Derivation, derivation_of, searchable
 from kinlab.doctor.entries.terms import Slip
-from kinlab.doctor.linkages.looked_up import reference_of
+from kinlab.doctor.linkages.looked_up import Reference, reference_of
 from kinlab.doctor.slips import of_entry, slip_cause
 from kinlab.doctor.text.habits import NOTHING
 from kinlab.doctor.text.line import words_in
@@ -25,7 +25,8 @@ from kinlab.doctor.text.stand_ins import bare_number, rounding_remarks, stand_in
 from kinlab.doctor.text.written import Together, Written
 from kinlab.doctor.verdicts import Excuse
 from kinlab.errors import KinlabError, already_said
-from kinlab.formulas.tree import Node, evaluate, names
+from kinlab.formulas.text import parse
+from kinlab.formulas.tree import Node, evaluate, names, renamed, sym
 from kinlab.host.language import _
 from kinlab.model.dh import DHTable
 from kinlab.model.robot import Robot
@@ -195,6 +196,11 @@ def only_for(numbers: Sequence[str]) -> list[str]:
     return [_("but it holds only for {numbers}").format(numbers=said)] if numbers else []
 
 
+_DIGITS = "0123456789"
+_TRIED = 6
+"""States at which a repaired text is compared with what it was."""
+
+
 def covered_up(
     case: Case, engine: Array, written: dict[str, Written]
 ) -> tuple[list[Cause], float, list[str]]:
@@ -220,10 +226,9 @@ def covered_up(
         )
         nothing += [name for name in zero if name not in nothing]
         if gap > TOLERANCES.formula_agrees:
-            # a term put in for another of the same value is no slip, but another form; and what
-            # two slips make of right numbers may be the same number: a sign twice
-            single = (slip for slip in of_entry(case, entry, text) if len(slip.kinds) == 1)
-            told = [slip for slip in single if not {*slip.kinds} & _WHOLE_TERMS]
+            # a term put in for another of the same value is no slip, but another form
+            every = of_entry(case, entry, text) if _names_numbers(text, derived) else []
+            told = [s for s in every if not {*s.kinds} & _WHOLE_TERMS and not _as_before(s, text)]
             slips += told[:1]
             largest = max(largest, gap) if told else largest
             kept = [] if told else kept
@@ -235,6 +240,35 @@ def covered_up(
             _("of this robot {names}: what stands with it is not judged").format(names=zeros)
         )
     return ([slip_cause(tuple(slips))] if slips else []), largest, remarks
+
+
+def _names_numbers(text: Written, derived: Reference) -> bool:
+    """Whether a text has a name for any number of the robot's: others hold for this one alone."""
+    return not names(text.node).isdisjoint(derived.parameters)
+
+
+def _as_before(slip: Slip, text: Written) -> bool:
+    """Whether a text is the same everywhere with a slip repaired: two signs that cancel."""
+    try:
+        new = parse(slip.corrected)
+    except KinlabError:
+        return False
+    new = renamed(new, dict(_as_in(names(new), names(text.node))))
+    every = sorted(names(new) | names(text.node))
+    rng = np.random.default_rng(7)
+    at = {name: rng.uniform(0.3, 1.7, _TRIED) for name in every}
+    old, repaired = (evaluate(node, at) for node in (text.node, new))
+    return bool(np.allclose(old, repaired, rtol=TOLERANCES.formula_agrees, atol=0.0))
+
+
+def _as_in(typed: set[str], known: set[str]) -> Iterator[tuple[str, Node]]:
+    """The names of a text as it is printed with what they are as it was read: theta1 is q1."""
+    for name in sorted(typed - known):
+        digits = name[len(name.rstrip(_DIGITS)) :]
+        left = known - typed
+        same = [x for x in left if digits and x[len(x.rstrip(_DIGITS)) :] == digits]
+        if len(same) == 1:
+            yield name, sym(same[0])
 
 
 def texts_again(

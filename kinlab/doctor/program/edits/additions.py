@@ -66,8 +66,8 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     if shape and not literal and not written and not isinstance(parent, ast.Attribute):
         yield from _matrices(here, scope, shape)
     row = len(shape) == 1 and isinstance(node, ast.Name) and scope.has_numpy
-    times = isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.Mult)
-    if times and len(shape) == 1 and isinstance(node, ast.Name):
+    multiplied = isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.Mult)
+    if multiplied and len(shape) == 1 and isinstance(node, ast.Name):
         yield here.instead(ast.BinOp(node, ast.Pow(), number(2)), "power", 1.12)
     if row and not isinstance(parent, ast.Subscript | ast.BinOp | ast.Attribute):
         total = ast.Attribute(ast.Name("np", ast.Load()), "cumsum", ast.Load())
@@ -429,9 +429,7 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
         named = isinstance(piece, ast.Name | ast.Subscript)
         one = isinstance(piece, ast.Call) and called(piece) == "eye"
         inside = turned and isinstance(piece, ast.BinOp) and isinstance(piece.op, ast.Mult)
-        if text == own or not (
-            whole or named or one or inside or isinstance(piece, ast.Attribute)
-        ):
+        if text == own or not (whole or named or one or inside or isinstance(piece, ast.Attribute)):
             continue
         if isinstance(piece, ast.List | ast.Tuple):
             continue  # what an array is made of is no term of it

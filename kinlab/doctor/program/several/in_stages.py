@@ -138,7 +138,8 @@ class InStages:
         rows = self._each(part, stand)
         if rows is None:
             return []
-        return self._sure(part, stand, self.together.sound[self._right(rows)][:, None])[:, 0]
+        some = self.together.sound[self._right(rows)][:, None]
+        return [int(k) for k in self._sure(part, stand, some)[:, 0]]
 
     def _alone(self, part: _Part) -> list[Way]:
         """Single edits that lanes cannot follow with which a part is right, the likeliest first."""

@@ -90,11 +90,9 @@ class TwoOfOne:
                 break
             good = sum(self._known(values, shape).astype(int) for values in met)
             good = np.where(self._known(met[odd.turn], shape), good, 0)
-            found += [
-                (-int(good[k]), start + k, (self.likely[i], self.likely[j]))
-                for k in np.flatnonzero(good)
-                for i, j in [every[start + k]]
-            ]
+            for k in np.flatnonzero(good).tolist():
+                i, j = every[start + k]
+                found.append((-int(good[k]), start + k, (self.likely[i], self.likely[j])))
         found.sort(key=lambda one: one[:2])
         return [way for *_rank, way in found[:_TOLD]]
 
