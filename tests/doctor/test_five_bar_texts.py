@@ -281,3 +281,17 @@ def test_a_coefficient_alone_that_is_multiplied_is_right_if_all_are() -> None:
     found = kl.diagnose("isotropic", "B1", "-l1*y")
     assert found.agrees and found.form == "unusual"
     assert "A, B and C all are" in found.remarks[0]
+
+
+@pytest.mark.parametrize(
+    ("entry", "text"),
+    [
+        ("w1y", "2*y - 0.6*sin(theta1)"),
+        ("w1y", "2*(y - 0.3*sin(theta1))"),
+        ("w1x", "2*x - 2*e - 0.6*cos(theta1)"),
+    ],
+)
+def test_numbers_for_names_hide_no_two_signs(entry, text) -> None:
+    """For another five-bar it is wrong; what undoes nothing, a sign twice, is no slip of it."""
+    found = kl.diagnose("isotropic", entry, text)
+    assert found.agrees, str(found)

@@ -555,3 +555,8 @@ def test_braces_with_a_remark_are_left_out(entry, text):
 def test_braces_around_what_may_be_read_otherwise_are_refused(text):
     with pytest.raises(ExpressionError, match="brace"):
         diagnosed("g2", text)
+
+
+def test_a_small_space_of_latex_alone_tells_that_it_is() -> None:
+    r"""Of ``m_2\,l_2^2`` nothing else is LaTeX's."""
+    assert kl.diagnose("planar2r", "M22", r"m_2\,l_2^2").agrees
