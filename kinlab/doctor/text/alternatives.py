@@ -216,14 +216,14 @@ def _number(line: Line, place: Place) -> None:
 
 
 def _may_be_reduced(place: Place, size: float) -> bool:
-    """Whether a number would stand above one that it has a divisor in common with: 4/12."""
+    """Whether a number would stand above one that it has a divisor in common with: 4/12, 0.5/2."""
     above = None if place.above is None else place.above.node
     if not isinstance(above, ast.BinOp) or not isinstance(above.op, ast.Div):
         return False
     below = above.right.value if isinstance(above.right, ast.Constant) else None
-    if not isinstance(below, int) or size != int(size) or above.left is not place.node:
+    if not isinstance(below, int) or above.left is not place.node:
         return False
-    return math.gcd(int(size), below) > 1
+    return size != int(size) or math.gcd(int(size), below) > 1
 
 
 def _angle(line: Line, place: Place) -> None:

@@ -25,6 +25,8 @@ _TENSORS = ("tensor", "Tensor", "TENSOR", "theta", "Theta", "THETA")
 _ROTATIONS = ("R", "r")
 """How names of rotation matrices begin."""
 _VECTOR, _TENSOR = (3,), (3, 3)
+_ALL_AXES = 1.06
+"""Cost of a body's energy about all axes for that about one."""
 _BESIDE = 1.06
 """Cost of what the same statement has the parts of."""
 _OF_SUMMANDS = 1.08
@@ -51,6 +53,7 @@ def of_composites(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdi
             yield from _next_entry(here, scope.observed)
         yield from _spread(here, scope)
         yield from _squares(here, scope)
+        yield from _about_all_axes(here, scope)
         return
     factor = isinstance(op, ast.MatMult)
     if isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Name) and len(shape) == 1:
@@ -182,6 +185,26 @@ def _squares(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
         if text in others or (text in scope.unused and isinstance(node.left, ast.Name)):
             square = ast.BinOp(other, ast.Pow(), number(2))
             yield here.instead(ast.BinOp(square, ast.Add(), node), "missing term", 1.1)
+
+
+def _about_all_axes(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """The energy of turning about one axis alone: ``w @ I @ w`` for ``I[2, 2]*w[2]**2``."""
+    node = here.node
+    if not isinstance(node, ast.BinOp) or not isinstance(node.op, ast.Mult):
+        return
+    squares = [x for x in factors(node) if isinstance(x, ast.BinOp) and isinstance(x.op, ast.Pow)]
+    entries = [x for x in factors(node) if isinstance(x, ast.Subscript)]
+    for square in squares:
+        for entry in entries if isinstance(square.left, ast.Subscript) else ():
+            rate, tensor = square.left.value, entry.value
+            if scope.observed.shape(rate) == _VECTOR and scope.observed.shape(tensor) == _TENSOR:
+                whole: ast.expr = ast.BinOp(
+                    ast.BinOp(rate, ast.MatMult(), tensor), ast.MatMult(), rate
+                )
+                for other in factors(node):
+                    if other is not square and other is not entry:
+                        whole = ast.BinOp(other, ast.Mult(), whole)
+                yield here.instead(whole, "missing factor", _ALL_AXES)
 
 
 def _is_product(node: ast.AST) -> bool:

@@ -87,7 +87,9 @@ def _mirroring(asked: Asked, observed: Observed) -> Callable[[ProgramEdit], bool
             old: Any = edit.numbers[0]
         elif isinstance(edit.node, ast.Constant) and id(edit.changes[0].holder) in named:
             old = edit.node.value
-        elif edit.part != DATA and (parts[edit.part].sets or _is_named_share(edit, named)):
+        elif edit.part != DATA and (
+            (parts[edit.part].sets and not _is_entry(edit)) or _is_named_share(edit, named)
+        ):
             seen = observed.of(edit.node)  # worked out as the module is loaded, or of numbers
             old = float(seen.values[0]) if seen and seen.shape == () and seen.values else None
         else:
@@ -97,6 +99,12 @@ def _mirroring(asked: Asked, observed: Observed) -> Callable[[ProgramEdit], bool
         return not is_own(robot, -old) or (old > 0 and _is_distance(edit))
 
     return mirrors
+
+
+def _is_entry(edit: ProgramEdit) -> bool:
+    """Whether it is of an entry of a row: of a point, or an axis, that has signs of its own."""
+    holder = edit.changes[0].holder
+    return isinstance(holder, list) and isinstance(edit.node, ast.Name | ast.Attribute)
 
 
 def _is_named_share(edit: ProgramEdit, named: set[int]) -> bool:

@@ -23,7 +23,7 @@ _WAYS, _TRIED = 2, 12
 """Edits from which is gone on at first, and of which it is looked whether all is right."""
 _EACH = 14_000_000
 """Work for one look."""
-_FARTHER = 0.06
+_FARTHER = 0.12
 """How much likelier an edit is of a statement that is wrong by what it is made of."""
 _TWO = 24_000_000
 """Work for two edits that are a step together."""
