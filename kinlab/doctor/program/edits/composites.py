@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from itertools import product
 from functools import reduce
 
 from kinlab.doctor.bytecode.syntax import factors, names, nodes
@@ -189,22 +190,21 @@ def _squares(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
 
 def _about_all_axes(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """The energy of turning about one axis alone: ``w @ I @ w`` for ``I[2, 2]*w[2]**2``."""
-    node = here.node
+    node, shape = here.node, scope.observed.shape
     if not isinstance(node, ast.BinOp) or not isinstance(node.op, ast.Mult):
         return
-    squares = [x for x in factors(node) if isinstance(x, ast.BinOp) and isinstance(x.op, ast.Pow)]
-    entries = [x for x in factors(node) if isinstance(x, ast.Subscript)]
-    for square in squares:
-        for entry in entries if isinstance(square.left, ast.Subscript) else ():
-            rate, tensor = square.left.value, entry.value
-            if scope.observed.shape(rate) == _VECTOR and scope.observed.shape(tensor) == _TENSOR:
-                whole: ast.expr = ast.BinOp(
-                    ast.BinOp(rate, ast.MatMult(), tensor), ast.MatMult(), rate
-                )
-                for other in factors(node):
-                    if other is not square and other is not entry:
-                        whole = ast.BinOp(other, ast.Mult(), whole)
-                yield here.instead(whole, "missing factor", _ALL_AXES)
+    every = [*factors(node)]
+    squares = (x for x in every if isinstance(x, ast.BinOp) and isinstance(x.op, ast.Pow))
+    rates = [(x, x.left.value) for x in squares if isinstance(x.left, ast.Subscript)]
+    tensors = [(x, x.value) for x in every if isinstance(x, ast.Subscript)]
+    for (square, rate), (entry, tensor) in product(rates, tensors):
+        if shape(rate) == _VECTOR and shape(tensor) == _TENSOR:
+            turned = ast.BinOp(rate, ast.MatMult(), tensor)
+            whole: ast.expr = ast.BinOp(turned, ast.MatMult(), rate)
+            for other in every:
+                if other is not square and other is not entry:
+                    whole = ast.BinOp(other, ast.Mult(), whole)
+            yield here.instead(whole, "missing factor", _ALL_AXES)
 
 
 def _is_product(node: ast.AST) -> bool:
