@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
-from itertools import product
 from functools import reduce
+from itertools import product
 
 from kinlab.doctor.bytecode.syntax import factors, names, nodes
 from kinlab.doctor.program.edits.scope.forms import statement_of
