@@ -170,16 +170,11 @@ class _Renamed(ast.NodeTransformer):
     def visit_Name(self, node: ast.Name) -> ast.expr:
         return copied(self.others.get(node.id, node))
 
-    def visit_Attribute(self, node: ast.Attribute) -> ast.expr:
+    def _piece(self, node: ast.expr) -> ast.expr:
         other = self.others.get(ast.unparse(node))
         if other is not None:
             return copied(other)
         self.generic_visit(node)
         return node
 
-    def visit_Subscript(self, node: ast.Subscript) -> ast.expr:
-        other = self.others.get(ast.unparse(node))
-        if other is not None:
-            return copied(other)
-        self.generic_visit(node)
-        return node
+    visit_Attribute = visit_Subscript = _piece

@@ -33,6 +33,8 @@ _ALIKE = 8
 """Edits of one effect that are kept."""
 _NOWHERE = 1e3
 """Stands for an answer that is no number, relative to the answer's size."""
+_BITS = 63
+"""Numbers of an answer by which it is foreseen what edits do together."""
 _EXCHANGED = 0.5
 """What it costs to take a term out and put another in."""
 
@@ -220,6 +222,26 @@ class Effects:
                     for k in best
                 ]
         return [chosen for *_, chosen in sorted(found)]
+
+
+def as_bits(flags: Flags) -> Any:
+    """Truth values of the first numbers, (..., P), as the bits of one, (...,)."""
+    bits = 1 << np.arange(min(_BITS, flags.shape[-1]), dtype=np.uint64)
+    return np.where(flags[..., : len(bits)], bits, np.uint64(0)).sum(axis=-1, dtype=np.uint64)
+
+
+def possible(moved: Any, spoilt: Any, wrong: Any, one: Any, other: Any) -> Any:
+    """Of which pairs each number that one of them changes alone is made right by it.
+
+    None may leave a wrong number as it is.
+
+    Args:
+        moved, spoilt: as bits what each edit changes, and makes or leaves wrong.
+        wrong: as bits what is wrong as it is.
+        one, other: the edits of each pair.
+    """
+    alone = (spoilt[one] & ~moved[other]) | (spoilt[other] & ~moved[one])
+    return (alone == 0) & (wrong & ~(moved[one] | moved[other]) == 0)
 
 
 def _meeting(sought: Array, each: Array, near: float) -> list[tuple[int, int]]:

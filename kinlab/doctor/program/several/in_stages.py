@@ -19,7 +19,7 @@ from kinlab.doctor.derivations.parts import MOVING
 from kinlab.doctor.program.places import changed
 from kinlab.doctor.program.search.asked import Asked
 from kinlab.doctor.program.search.repair import LineSearch
-from kinlab.doctor.program.several.effects import Effects, Way
+from kinlab.doctor.program.several.effects import Effects, Way, as_bits, possible
 from kinlab.doctor.program.several.together import TriedTogether
 from kinlab.doctor.program.trial import NoProgramError
 from kinlab.errors import KinlabError
@@ -38,8 +38,6 @@ _TRUSTED = 0.2
 """What it speaks for an edit that a search has gone on from it."""
 _FEW = 400
 """Edits of which those that lanes cannot follow are run alone."""
-_BITS = 63
-"""Numbers of a part by which pairs are told to be impossible beforehand."""
 
 Chosen = tuple[int, ...]
 """Edits by their numbers."""
@@ -213,24 +211,12 @@ class InStages:
         return found
 
     def _possible(self, numbers: Any, rows: Array, own: Array) -> Any:
-        """Pairs of which each number that one of them changes alone is made right by it.
-
-        None may leave a wrong number as it is; the likeliest first.
-        """
+        """Pairs that may make a part right as far as can be foreseen, the likeliest first."""
         near = self.known.near
-        bits = 1 << np.arange(min(_BITS, len(own)), dtype=np.uint64)
-        size = len(bits)
-
-        def told(flags: Any) -> Any:
-            return np.where(flags[..., :size], bits, np.uint64(0)).sum(axis=-1, dtype=np.uint64)
-
-        moved, right = told(np.abs(rows - own) > near), told(np.abs(rows) <= near)
-        wrong, spoilt = told(np.abs(own) > near), moved & ~right
+        moved, right = as_bits(np.abs(rows - own) > near), as_bits(np.abs(rows) <= near)
         one, other = np.triu_indices(len(numbers), 1)
-        alone = (spoilt[one] & ~moved[other]) | (spoilt[other] & ~moved[one])
-        fits = (alone == 0) & (wrong & ~(moved[one] | moved[other]) == 0)
-        within = self.together.within[np.ix_(numbers, numbers)]
-        fits &= ~within[one, other]
+        fits = possible(moved, moved & ~right, as_bits(np.abs(own) > near), one, other)
+        fits &= ~self.together.within[np.ix_(numbers, numbers)][one, other]
         order = np.argsort(((one + 1) * (other + 1))[fits], kind="stable")
         return np.column_stack([numbers[one[fits][order]], numbers[other[fits][order]]])
 

@@ -20,7 +20,7 @@ from kinlab.doctor.changes import ANY_ZERO
 from kinlab.doctor.program.lanes.numbers import lanes_within, operation
 from kinlab.doctor.program.lanes.run import InLanes
 from kinlab.doctor.program.search.repair import LineSearch
-from kinlab.doctor.program.several.effects import Chosen, Effects
+from kinlab.doctor.program.several.effects import Chosen, Effects, as_bits, possible
 from kinlab.doctor.program.trial import NoProgramError
 from kinlab.doctor.text.pairs import pairs_adding_up
 
@@ -58,8 +58,6 @@ _SOONEST = 60
 """Edits of which any three are run, whatever speaks against them."""
 _GAINING = 30
 """Edits that make numbers right, with which any other is run."""
-_BITS = 63
-"""Numbers of an answer by which threes are told apart beforehand."""
 _BEYOND = 10_000_000
 """What one run may take beyond what is left."""
 _ONE_RUN = 45_000_000
@@ -264,26 +262,14 @@ class TriedTogether:
                     yield -1 - turn, pairs
 
     def _possible_of(self, pairs: Any) -> Any:
-        """Of which pairs each number that one of them changes alone is made right by it.
-
-        None may leave a wrong number as it is.
-        """
-        moved, spoilt, wrong = self._bits
-        one, other = pairs.T
-        alone = (spoilt[one] & ~moved[other]) | (spoilt[other] & ~moved[one])
-        return (alone == 0) & (wrong & ~(moved[one] | moved[other]) == 0)
+        """Which pairs may make the program right as far as can be foreseen."""
+        return possible(*self._bits, *pairs.T)
 
     @cached_property
     def _bits(self) -> tuple[Any, Any, Any]:
         """As bits the numbers that each edit changes, those it makes wrong, and what is wrong."""
-        bits = 1 << np.arange(min(_BITS, len(self.known.goal)), dtype=np.uint64)
-        size = len(bits)
-        moved, right = (
-            np.where(flags[:, :size], bits, np.uint64(0)).sum(axis=1, dtype=np.uint64)
-            for flags in (~self.known.still, self.known.right)
-        )
-        wrong = np.where(self.known.wrong[:size], bits, np.uint64(0)).sum(dtype=np.uint64)
-        return moved, moved & ~right, wrong
+        moved, right = as_bits(~self.known.still), as_bits(self.known.right)
+        return moved, moved & ~right, as_bits(self.known.wrong)
 
     def _blocks(self) -> Iterator[tuple[int, Any, Any]]:
         """Some edits and others, the likeliest first: of two slips one is mostly a likely one."""
