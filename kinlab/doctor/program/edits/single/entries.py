@@ -15,6 +15,8 @@ from kinlab.doctor.program.edits.single.whole import plus, shifted, value_of, wh
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import Here, ProgramEdit, number
 
+_PICKED, _LESS = 1.1, 0.02
+"""Cost of one of several indices that are picked out; how much less of the one beside it."""
 _IDLE, _FEW = 1.0, 8
 """Cost of a key that the program never asks for; keys among which a wrong one is looked for early.
 """
@@ -48,6 +50,12 @@ def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
     beside = _keys_beside(here)
     for k, (holder, field, key) in enumerate(keys):
         size = shape[k] if shape is not None and k < len(shape) else 0
+        if isinstance(key, ast.List) and all(map(whole_constant, key.elts)):
+            for n, one in enumerate(key.elts):  # which are taken: wrench[[0, 1, 5]]
+                for other in {*range(size)} - {*map(value_of, key.elts)}:
+                    near = abs(other - value_of(one)) == 1
+                    cost = _PICKED - _LESS * near
+                    yield here.within(key.elts, n, number(other), "index", cost)
         if whole_constant(key):
             for other in range(-1, max(size, 4 if not size else 0)):
                 if other != value_of(key) and not (other == -1 and size):
