@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.doctor.glossary.meaning import meaning_of
-from kinlab.doctor.program.places import DATA, ProgramEdit, changed
+from kinlab.doctor.program.places import DATA, ProgramEdit, changed, row_of
 from kinlab.doctor.program.search.repair import LineSearch, ProgramRepair
 from kinlab.doctor.program.several.effects import Chosen, Effects, Way, effects_of
 from kinlab.doctor.program.several.in_order import InOrder
@@ -77,8 +77,9 @@ def several(search: LineSearch) -> list[ProgramRepair]:
         search: whose single edits were tried already.
     """
     with quietly():
-        found = _Several(_SHARE * search.most // 10).found(search)
-        return [_reduced(repair, search) for repair in found]
+        looking = _Several(_SHARE * search.most // 10)
+        found = [_reduced(repair, search) for repair in looking.found(search)]
+        return looking.of_one_line(search, found)
 
 
 def _reduced(repair: ProgramRepair, search: LineSearch) -> ProgramRepair:
@@ -200,6 +201,18 @@ class _Several:
             better = self._last(search, [rest])
             if better:
                 return self._fewer(search, better)
+        return found
+
+    def of_one_line(self, search: LineSearch, found: list[ProgramRepair]) -> list[ProgramRepair]:
+        """The same with one edit for two of one line, of three or more, where one does as well."""
+        own = found[0].edits if found and len(found[0].edits) > _DEEPEST else ()
+        for two in combinations(own, 2):
+            if two[0].part != DATA and row_of(two[0]) == row_of(two[1]):
+                self.left = max(self.left, 1)
+                rest = tuple(edit for edit in own if edit not in two)
+                better = self._last(search, [rest])
+                if better:
+                    return better
         return found
 
     def _after(self, search: LineSearch, firsts: list[Way]) -> list[ProgramRepair]:

@@ -36,8 +36,14 @@ class Scope(Knowledge):
         """Whether one of two numbers of one link is half of the other: ``lc1`` of ``l1``."""
         digits = {name[len(name.rstrip("0123456789")) :] for name in (one, other)}
         values = [self.space.get(name) for name in (one, other)]
-        floats = [x for x in values if isinstance(x, float)]
-        return len(digits) == 1 and len(floats) == 2 and min(floats) * 2 == max(floats)
+        if len(digits) > 1 or not all(isinstance(x, float | list | np.ndarray) for x in values):
+            return False
+        try:
+            first, last = (np.asarray(x, dtype=float) for x in values)
+        except (TypeError, ValueError):
+            return False
+        doubled = first.shape == last.shape and bool(first.any())
+        return doubled and any(np.array_equal(2 * x, y) for x, y in ((first, last), (last, first)))
 
     def is_idle(self, node: ast.AST) -> bool:
         """Whether it is what is set and used nowhere, or an entry of that."""
