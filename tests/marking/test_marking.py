@@ -55,7 +55,7 @@ def test_right_answers_get_all_points():
         ("q2", "(m1+m2)*g*l1*c1 + m2*g*l1*c12", "wrong", 2.0, "g1: look at l1", "an index is off"),
         ("q2", "(m1+m2)*g*l1*c1", "wrong", 0.0, "g1", "a term is missing"),
         ("q4", "-m1*g*l1*sin(q1)", "wrong", 0.75, "the formula as a whole", "a sign is the other way"),
-        ("q4", "m1*g*l1", "wrong", 0.0, "the formula as a whole", "the cause is not known"),
+        ("q4", "m1*g*l1", "wrong", 0.0, "q4", "a factor is missing"),
         ("q1", "l1*c1 + l2*c_{12", "could not be read", 0.0, "", ""), ("q1", "", "no answer", 0.0, "", ""),
         ("q1", "y = l1*c1", "could not be read", 0.0, "", ""), ("q3", "M11 = m2", "wrong", 0.0, None, None),
         ("q2", r"$g_1 = (m_1+m_2) g l_1 \cos\theta_1 + m_2 g l_2 \cos(\theta_1+\theta_2)$", "right", 4.0, "", ""),
@@ -465,11 +465,9 @@ def test_an_entry_may_be_called_by_its_letter():
         ("-23.0535", "sign"),
         ("40", "unknown"),
         ("17 + 6", "unknown"),
-        (
-            "(m1 + m2)*g*l1",
-            "unknown",
-        ),  # a term is lost: no factor, though every number is a multiple
-        ("m1*g*l1 + m2*g*l2", "unknown"),
+        # a term is lost: no factor, though every number is a multiple
+        ("(m1 + m2)*g*l1", "missing term"),
+        ("m1*g*l1 + m2*g*l2", "missing term"),
     ],
 )
 def test_a_number_is_not_called_a_multiple_of_the_right_one(answer, kind):
@@ -711,3 +709,23 @@ def test_a_fault_of_our_own_costs_one_answer_and_no_class(monkeypatch) -> None:
     marks = kl.mark(SHEET, {"ada": RIGHT, "eve": RIGHT}, workers=1)
     assert marks["ada"].total == 10.0
     assert [one.verdict for one in marks["eve"].outcomes] == ["right"] * 3 + ["could not be read"]
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "kinds"),
+    [
+        ("- l2*sin(q1 + q2)*qd2", "+ l2*sin(q1 + q2)*qd2", ("sign",)),
+        ("l1*sin(q1)", "l1*cos(q1)", ("sin/cos",)),
+        ("l2*sin(q1 + q2))", "l2*sin(q2))", ("argument",)),
+        ("+ l2*sin(q1 + q2))", ")", ("missing term",)),
+        ("*qd2", "*qd1", ("index",)),
+        ("l1*sin(q1)", "sin(q1)", ("missing factor",)),
+    ],
+)
+def test_slips_beside_an_own_answer_are_told_by_kind(right, wrong, kinds):
+    """No engine knows the velocity of the tool along x by itself."""
+    model = "-(l1*sin(q1) + l2*sin(q1 + q2))*qd1 - l2*sin(q1 + q2)*qd2"
+    question = {"id": "q1", "entry": "v", "answer": model, "points": 4}
+    slips = {kinds[0]: 0.25}
+    found = marked({"q1": model.replace(right, wrong)}, questions=[question], slips=slips)["q1"]
+    assert (found.kinds, found.points, found.place) == (kinds, 3.0, "v")

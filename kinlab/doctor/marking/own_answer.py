@@ -12,12 +12,14 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes, relative_errors
+from kinlab.doctor.entries import search
 from kinlab.doctor.entries.terms import rods_following
 from kinlab.doctor.excuses import only_for
 from kinlab.doctor.linkages.named_numbers import named_numbers
 from kinlab.doctor.marking.marks import Outcome, points_left, right_outcome, wrong_outcome
 from kinlab.doctor.marking.sheet import Question, Sheet, SheetError
 from kinlab.doctor.marking.variation import robot_for
+from kinlab.doctor.text.line import Names
 from kinlab.doctor.text.stand_ins import bare_number, stand_ins
 from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import holds_with_other_numbers
@@ -32,6 +34,8 @@ from kinlab.host.language import _
 from kinlab.tolerances import TOLERANCES
 
 _STATES = 60
+_NUMBERS = range(1, 10)
+"""What joints are counted with."""
 _TYPESET = re.compile(r"[\\_{}]")
 _WORD = re.compile(r"[A-Za-z][A-Za-z0-9]*")
 
@@ -48,11 +52,14 @@ def with_answer(sheet: Sheet, question: Question, student: str, file: FormulaFil
     forms: set[str] = set()
     only: set[str] = set()
     for name, right in model.formulas.items():
-        kinds, kept = _Beside(file, model, name, words, question.tolerance).judged()
+        beside = _Beside(file, model, name, words, question.tolerance)
+        kinds, kept = beside.judged()
+        place = name if len(model.formulas) > 1 else _("the formula as a whole")
+        if kinds == ("unknown",) and (found := beside.slips()) != kinds:
+            kinds, place = found, name
         forms.update(kinds)
         only.update(kept)
         if kinds not in ((), ("rounded",)):
-            place = name if len(model.formulas) > 1 else _("the formula as a whole")
             points, right_one = points_left(question, kinds), (f"{name} = {right}",)
             return wrong_outcome(question, points, kinds, place, right_one, formulas)
     numbers = [f"{name} = {words[name]:.7g}" for name in sorted(only)]
@@ -173,6 +180,31 @@ class _Beside:
                 return ("rounded",), set()
             return _multiple(self.mine, self.theirs, at, self.words), set()
 
+    def slips(self) -> tuple[str, ...]:
+        """The kinds of one slip, or of two, without which it would be the model's.
+
+        What undoes them must hold with any numbers of the arm that it has names for.
+        """
+        at, mine, theirs = _states(self.names, self.words), self.mine, self.theirs
+        used = tree.names(mine) | tree.names(theirs)
+        numbers = tuple(sorted(used & {*self.words}))
+        letters = tuple(x for x in ("q", "qd", "qdd") if any(f"{x}{k}" in used for k in _NUMBERS))
+        joints = max((k for k in _NUMBERS for x in letters if f"{x}{k}" in used), default=0)
+        rng = np.random.default_rng(11)
+        there = {
+            k: v * rng.uniform(0.7, 1.4, v.shape) if k in numbers else v for k, v in at.items()
+        }
+        truth = _values(theirs, there)
+        if not np.isfinite(truth).all() or not np.isfinite(_values(mine, there)).all():
+            return ("unknown",)
+        names = Names(numbers, joints, letters)
+        case = search.study(mine, truth, there, names, [*_terms(theirs)])
+        for found in (search.single, search.double, search.double_in_term):
+            repairs = found(case)
+            if repairs:
+                return tuple(edit.kind for edit in repairs[0].edits)
+        return ("unknown",)
+
     def _to_digits(self, hand: Array, truth: Array, at: Mapping[str, Array]) -> bool:
         """Whether it is right with rounded numbers, its own or those of the model."""
         text, model = self.text, self.model_text
@@ -224,6 +256,16 @@ class _Beside:
         there = np.isfinite(hand) & np.isfinite(truth)
         most = max(self.tolerance, TOLERANCES.formula_agrees)
         return bool(there.any() and np.max(relative_errors(hand[there], truth[there])) > most)
+
+
+def _terms(node: Node) -> Iterator[Node]:
+    """The terms of a sum, and of the sums that are factors in one of these."""
+    for term in node.args if node.op == "add" else (node,):
+        yield term
+        sums = [one for one in term.args if one.op == "add"] if term.op == "mul" else []
+        for one in sums[:1]:
+            others = [factor for factor in term.args if factor is not one]
+            yield from (tree.mul(*others, inner) for inner in one.args)
 
 
 def _another(value: Any) -> Any:
@@ -280,7 +322,7 @@ def _values(node: Node, at: Mapping[str, Array]) -> Array:
 
 
 def _joints() -> set[str]:
-    return {f"{letter}{k}" for letter in ("q", "qd", "qdd") for k in range(1, 10)}
+    return {f"{letter}{k}" for letter in ("q", "qd", "qdd") for k in _NUMBERS}
 
 
 def _opened(node: Node, file: FormulaFile, entry: str, depth: int = 0) -> Node:
