@@ -207,7 +207,7 @@ class _Several:
         """The same with one edit for two of one line, of three or more, where one does as well."""
         own = found[0].edits if found and len(found[0].edits) > _DEEPEST else ()
         for two in combinations(own, 2):
-            if two[0].part != DATA and row_of(two[0]) == row_of(two[1]):
+            if DATA not in (two[0].part, two[1].part) and row_of(two[0]) == row_of(two[1]):
                 self.left = max(self.left, 1)
                 rest = tuple(edit for edit in own if edit not in two)
                 better = self._last(search, [rest])
