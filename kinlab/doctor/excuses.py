@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -25,8 +25,8 @@ from kinlab.doctor.text.stand_ins import bare_number, rounding_remarks, stand_in
 from kinlab.doctor.text.written import Together, Written
 from kinlab.doctor.verdicts import Excuse
 from kinlab.errors import KinlabError, already_said
-from kinlab.formulas.text import parse
-from kinlab.formulas.tree import Node, evaluate, names, renamed, sym
+from kinlab.formulas.text import canonical, parse
+from kinlab.formulas.tree import Node, evaluate, names, renamed
 from kinlab.host.language import _
 from kinlab.model.dh import DHTable
 from kinlab.model.robot import Robot
@@ -196,7 +196,6 @@ def only_for(numbers: Sequence[str]) -> list[str]:
     return [_("but it holds only for {numbers}").format(numbers=said)] if numbers else []
 
 
-_DIGITS = "0123456789"
 _TRIED = 6
 """States at which a repaired text is compared with what it was."""
 
@@ -253,22 +252,12 @@ def _as_before(slip: Slip, text: Written) -> bool:
         new = parse(slip.corrected)
     except KinlabError:
         return False
-    new = renamed(new, dict(_as_in(names(new), names(text.node))))
+    new = renamed(new, {name: canonical(name) for name in names(new)})
     every = sorted(names(new) | names(text.node))
     rng = np.random.default_rng(7)
     at = {name: rng.uniform(0.3, 1.7, _TRIED) for name in every}
     old, repaired = (evaluate(node, at) for node in (text.node, new))
     return bool(np.allclose(old, repaired, rtol=TOLERANCES.formula_agrees, atol=0.0))
-
-
-def _as_in(typed: set[str], known: set[str]) -> Iterator[tuple[str, Node]]:
-    """The names of a text as it is printed with what they are as it was read: theta1 is q1."""
-    for name in sorted(typed - known):
-        digits = name[len(name.rstrip(_DIGITS)) :]
-        left = known - typed
-        same = [x for x in left if digits and x[len(x.rstrip(_DIGITS)) :] == digits]
-        if len(same) == 1:
-            yield name, sym(same[0])
 
 
 def texts_again(

@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hand_programs import asked, with_slips, written
+from hand_programs import PROGRAMS, asked, searched, with_slips, written
 
 import kinlab as kl
+from kinlab.doctor.program.several.witnesses import Witnesses
 
 ROWS = [("R", 0.0, np.pi / 2, 0.31), ("P", 0.12, -np.pi / 2, 0.22), ("R", 0.29, 0.4, 0.07)]
 MASSES, CENTRES = (4.1, 2.7, 1.3), ((0.02, -0.09, 0.03), (-0.17, 0.02, 0.05), (-0.12, 0.01, -0.02))
@@ -210,3 +211,17 @@ def test_the_mirror_line_is_missing() -> None:
     found, good = asked(with_slips(MASSES_OF, slips), ARM, "mass_matrix")
     assert good, str(found)
     assert "a line is missing" in str(found)
+
+
+def test_an_edit_deep_in_a_statement_is_watched_as_any_other() -> None:
+    """Edits are compiled together: each must tell of its own statement what it does alone."""
+    ne = PROGRAMS["newton-euler"]
+    slips = [("np.cross(r, fi)", "np.cross(fi, r)"), ("9.81, 0])", "-9.81, 0])")]
+    search = searched(ne.robot, ne.quantity, with_slips(ne.text, slips), beside=0.0)
+    search.singles()
+    every = (edit for edit, _values in search.tried if id(edit.node) in search.suspected)
+    some = [edit for edit in every if edit.kind in ("extra term", "operator")]
+    together = Witnesses(search).steps([(edit,) for edit in some], 10**9)
+    alone = [step for edit in some for step in Witnesses(search).steps([(edit,)], 10**9)]
+    assert alone
+    assert {step.edits for step in together} == {step.edits for step in alone}

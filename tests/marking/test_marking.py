@@ -729,3 +729,12 @@ def test_slips_beside_an_own_answer_are_told_by_kind(right, wrong, kinds):
     slips = {kinds[0]: 0.25}
     found = marked({"q1": model.replace(right, wrong)}, questions=[question], slips=slips)["q1"]
     assert (found.kinds, found.points, found.place) == (kinds, 3.0, "v")
+
+
+@pytest.mark.parametrize("answer", ["4", "48", "sqrt(4)", "5 - 11", "0"])
+def test_of_bare_numbers_beside_an_own_answer_no_slip_is_told(answer):
+    """4 is the root of 16, a quarter of it, and 16 with a term left out: nothing tells which."""
+    question = {"id": "q1", "answer": "16", "points": 4}
+    assert marked({"q1": answer}, questions=[question], slips={"factor": 0.25})["q1"].kinds == (
+        "unknown",
+    )

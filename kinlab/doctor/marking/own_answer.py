@@ -183,8 +183,11 @@ class _Beside:
     def slips(self) -> tuple[str, ...]:
         """The kinds of one slip, or of two, without which it would be the model's.
 
-        What undoes them must hold with any numbers of the arm that it has names for.
+        What undoes them must hold with any numbers of the arm that it has names for; of bare
+        numbers each is some factor, or power, of any other.
         """
+        if not tree.names(self.mine):
+            return ("unknown",)
         at, mine, theirs = _states(self.names, self.words), self.mine, self.theirs
         used = tree.names(mine) | tree.names(theirs)
         numbers = tuple(sorted(used & {*self.words}))

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import ast
 import logging
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -62,8 +61,6 @@ class InLanes:
     ) -> None:
         self.trial, self.states = trial, states
         self.woven = Woven(trial, observed, edits, watched)
-        self._met: list[Any] = []
-        self._count = 0
         whole = {n for n, change in self.woven.data if isinstance(change.now, int)}
         self.counts = counts and bool(whole)
         self.placed = self.woven.placed - (set() if counts else whole)
@@ -101,9 +98,17 @@ class InLanes:
             most: work that may be done.
         """
         lanes, before = Lanes(chosen, most), self.work
-        self._met, self._count = [], count
+        met: list[Any] = []
+
+        def meet(value: Any) -> Any:
+            if lanes.here is lanes.all:
+                met.append(value)
+                if len(met) == count:
+                    raise _MetError
+            return value
+
         try:
-            with self._placed(lanes):
+            with self._placed(lanes, meet):
                 self.trial.function(*(x.copy() for x in self.states[0]))
         except _MetError:
             pass
@@ -112,7 +117,7 @@ class InLanes:
         finally:
             self.work = before + lanes.work
         found: list[Array] = []
-        for value in self._met:
+        for value in met:
             entries = np.array(value, dtype=object).ravel()
             try:
                 rows = np.array([_full(entry, lanes) for entry in entries]).T
@@ -121,14 +126,6 @@ class InLanes:
             rows[lanes.lost] = np.nan
             found.append(rows)
         return found
-
-    def _meet(self, lanes: Lanes, value: Any) -> Any:
-        """Keeps what is watched, where it is met in all lanes; nothing is run after the last."""
-        if lanes.here is lanes.all:
-            self._met.append(value)
-            if len(self._met) == self._count:
-                raise _MetError
-        return value
 
     def _in_halves(self, chosen: Any, count: int | None, most: int) -> Array | None:
         """The same; where it fails each half alone, as often as that may be done."""
@@ -176,8 +173,8 @@ class InLanes:
         return found
 
     @contextmanager
-    def _placed(self, lanes: Lanes) -> Iterator[None]:
-        """The program with its numbers in lanes."""
+    def _placed(self, lanes: Lanes, meet: Callable[[Any], Any] | None = None) -> Iterator[None]:
+        """The program with its numbers in lanes; ``meet`` is given what is watched."""
         trial = self.trial
         every = range(len(self._functions))
         kept, space = [trial.placed(k) for k in every], dict(trial.space)
@@ -191,7 +188,7 @@ class InLanes:
                 ways = Ways(lanes)
                 trial.space |= {"_pick": lanes.pick, "_kept": ways.kept}
                 trial.space |= {"_turns": ways.turns, "_sides": ways.sides}
-                trial.space["_met"] = partial(self._meet, lanes)
+                trial.space["_met"] = meet
                 for k in every:
                     trial.place(k, self._functions[k])
                 trial.stale()

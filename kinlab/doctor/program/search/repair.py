@@ -48,6 +48,8 @@ _MORE_WORK, _WOVEN = 70_000_000, 5000
 """Work that may be done for them; what putting one in amounts to."""
 _AT_ONCE = 400
 """How many of them at a time."""
+_RARER = 4
+"""To how many of these comes one that is run alone."""
 _WEIGHED = 9000
 """Edits that are weighed, and may be tried."""
 _SHARE = 6
@@ -226,14 +228,17 @@ class LineSearch:
             return []
         found: list[ProgramRepair] = []
         parts = {part.name for part in self.trial.program.parts}
-        calling = [edit for edit in rest if _calls(edit, parts)]
-        others = [edit for edit in rest if edit not in {*calling}]
+        calling: list[ProgramEdit] = []
+        others: list[ProgramEdit] = []
+        for edit in rest:
+            (calling if _calls(edit, parts) else others).append(edit)
         variants = Variants(self.trial, calling)
         for k in range(0, len(rest), _AT_ONCE):
             if self.work.done > self.in_lanes:
                 break
-            told = self._run_at_once(others[k : k + _AT_ONCE], own) if k < len(others) else []
-            told += self._run_alone(calling[k // 4 : (k + _AT_ONCE) // 4], variants)
+            some, n = others[k : k + _AT_ONCE], k // _RARER
+            told = self._run_at_once(some, own) if some else []
+            told += self._run_alone(calling[n : n + _AT_ONCE // _RARER], variants)
             for edit, values in told:
                 self.tried.append((edit, values))
                 if self.asked.right(values).all():

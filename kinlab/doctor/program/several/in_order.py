@@ -40,7 +40,7 @@ class InOrder:
         most: operations that may be done.
 
     Attributes:
-        reached: the edits that were gone on from, two before one, and more at the end.
+        reached: the edits that were gone on from: two, one, and then others, more at the end.
     """
 
     def __init__(self, search: LineSearch, known: Effects, most: int) -> None:
@@ -57,6 +57,9 @@ class InOrder:
         repair = self._from((), set())
         # beside two one more is looked for; a third that is not the last is rather none
         self.reached.sort(key=lambda way: (len(way) > _BESIDE, -len(way)))
+        alone = next((k for k, way in enumerate(self.reached) if len(way) == 1), 0)
+        if alone > 1:  # all of two may have the same wrong second one
+            self.reached.insert(1, self.reached.pop(alone))
         return repair
 
     def _from(self, stand: Way, before: set[int]) -> ProgramRepair | None:
@@ -119,9 +122,8 @@ class InOrder:
                     steps += self._looked(here, few)
                     if any(step.whole for step in steps):
                         break
-                else:
-                    if len(stand) < _BESIDE:
-                        steps = self._looked_at_two(here, some) or steps
+                if not any(step.whole for step in steps) and len(stand) < _BESIDE:
+                    steps = self._looked_at_two(here, some) or steps
                 steps.sort(key=lambda step: (not step.whole, step.cost))
         except NoProgramError:
             return [], before
@@ -133,7 +135,7 @@ class InOrder:
         steps: list[FirstStep] = []
         for pairs in two.pairs():
             witnesses = Witnesses(here)
-            steps = witnesses.steps_of_two(pairs, self.of_two)
+            steps = witnesses.steps(pairs, self.of_two)
             self.of_two -= witnesses.done
             self.search.work.done += witnesses.done
             if steps:
@@ -151,7 +153,7 @@ class InOrder:
         if not some:
             return []
         witnesses = Witnesses(here)
-        steps = witnesses.steps(some, min(self.left, _EACH))
+        steps = witnesses.steps([(edit,) for edit in some], min(self.left, _EACH))
         self.left -= witnesses.done
         self.search.work.done += witnesses.done
         return steps

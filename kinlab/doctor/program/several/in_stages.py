@@ -20,6 +20,7 @@ from kinlab.doctor.program.places import changed
 from kinlab.doctor.program.search.asked import Asked
 from kinlab.doctor.program.search.repair import LineSearch
 from kinlab.doctor.program.several.effects import Effects, Way, as_bits, possible
+from kinlab.doctor.program.several.rest import moving_alone
 from kinlab.doctor.program.several.together import TriedTogether
 from kinlab.doctor.program.trial import NoProgramError
 from kinlab.errors import KinlabError
@@ -63,33 +64,40 @@ class InStages:
         search: whose program is wrong.
         known: what single edits do.
         together: the program in lanes with these.
+        before: edits from which a search went on that found nothing: they are likelier.
         most: operations that may be done.
+
+    Attributes:
+        reached: edits with which some parts are right, where none were found for all.
     """
 
     def __init__(
-        self, search: LineSearch, known: Effects, together: TriedTogether, most: int
+        self,
+        search: LineSearch,
+        known: Effects,
+        together: TriedTogether,
+        before: Sequence[Way],
+        most: int,
     ) -> None:
         self.search, self.known, self.together = search, known, together
         self.left, self.seen = most, dict[Any, Array]()
+        trusted = {id(edit) for way in before for edit in way}
+        likelier = [any(id(edit) in trusted for edit in alike) for alike in known.alike]
+        self.costs = known.costs - _TRUSTED * np.array(likelier, dtype=float)
         usable = together.usable and most > 0
         self.parts = [*_parts(search)] if usable else []
         self.states = together.lanes.states if usable else []
         self.reached: list[Way] = []
 
-    def ways(self, two: bool, before: Sequence[Way] = ()) -> list[Way]:
+    def ways(self, two: bool) -> list[Way]:
         """Edits with which all parts are right, and the whole, the likeliest first.
 
         Args:
             two: whether two of one part are looked for, where one does not do.
-            before: edits from which a search went on that found nothing: they are likelier.
         """
         self.reached = []
         if not self.parts:
             return []
-        trusted = {id(edit) for way in before for edit in way}
-        self.costs = self.known.costs.copy()
-        for k, alike in enumerate(self.known.alike):
-            self.costs[k] -= _TRUSTED * any(id(edit) in trusted for edit in alike)
         lanes, work = self.together.lanes, self.together.lanes.work
         ways: list[Chosen] = [()]
         first: _Part | None = None
@@ -157,8 +165,7 @@ class InStages:
 
     def _sure(self, part: _Part, stand: Chosen, some: Any) -> Any:
         """Those of some edits, (C, E), with which a part is right at all its states."""
-        beside = np.broadcast_to(np.array(stand, dtype=int), (len(some), len(stand)))
-        rows = self._rows(part, np.column_stack([beside, some])) if len(some) else None
+        rows = self._rows(part, _beside(stand, some)) if len(some) else None
         return some[:0] if rows is None else some[self._right(rows)]
 
     def _each(self, part: _Part, stand: Chosen) -> Array | None:
@@ -168,8 +175,7 @@ class InStages:
             found: list[Array] = []
             for start in range(0, len(self.together.sound), _AT_ONCE):
                 some = self.together.sound[start : start + _AT_ONCE]
-                beside = np.broadcast_to(np.array(stand, dtype=int), (len(some), len(stand)))
-                rows = self._rows(part, np.column_stack([beside, some]), 1)
+                rows = self._rows(part, _beside(stand, some), 1)
                 if rows is None:
                     return None
                 found.append(rows)
@@ -199,8 +205,7 @@ class InStages:
         found: list[Chosen] = []
         for start in range(0, len(pairs), _PAIRS):
             some = pairs[start : start + _PAIRS]
-            beside = np.broadcast_to(np.array(stand, dtype=int), (len(some), len(stand)))
-            values = self._rows(part, np.column_stack([beside, some]), 1)
+            values = self._rows(part, _beside(stand, some), 1)
             if values is None or self.left <= 0:
                 break
             for i, j in some[self._right(values)][:_WAYS].tolist():
@@ -242,6 +247,12 @@ class InStages:
     def _right(self, rows: Array) -> Any:
         """Which rows have nothing missing."""
         return (np.abs(rows) <= self.known.near).all(axis=1)
+
+
+def _beside(stand: Chosen, some: Any) -> Any:
+    """Edits, or several at a time, (C,) or (C, E), each with those that stand."""
+    standing = np.broadcast_to(np.array(stand, dtype=int), (len(some), len(stand)))
+    return np.column_stack([standing, some])
 
 
 def _parts(search: LineSearch) -> Iterator[_Part]:
@@ -290,10 +301,7 @@ def _silent(few: dict[str, Array], moving: list[str]) -> Iterator[dict[str, Arra
     if "v" not in moving:
         groups = groups[:-1]
     for group in groups:
-        yield {
-            name: stack if name not in moving or name in group else np.zeros_like(stack)
-            for name, stack in few.items()
-        }
+        yield moving_alone(few, group)
 
 
 def _masks(quantity: str, shape: tuple[int, ...], joints: int) -> Iterator[Any]:

@@ -78,8 +78,9 @@ def several(search: LineSearch) -> list[ProgramRepair]:
     """
     with quietly():
         looking = _Several(_SHARE * search.most // 10)
-        found = [_reduced(repair, search) for repair in looking.found(search)]
-        return looking.of_one_line(search, found)
+        return looking.of_one_line(
+            search, [_reduced(repair, search) for repair in looking.found(search)]
+        )
 
 
 def _reduced(repair: ProgramRepair, search: LineSearch) -> ProgramRepair:
@@ -125,8 +126,9 @@ class _Several:
         if found:
             return self._settled(search, found)
         together = TriedTogether(search, known)
-        stages = InStages(search, known, together, 0 if search.stand else _IN_STAGES)
-        found = tried.of_ways(stages.ways(two=False, before=in_order.reached))
+        most = 0 if search.stand else _IN_STAGES
+        stages = InStages(search, known, together, in_order.reached, most)
+        found = tried.of_ways(stages.ways(two=False))
         if found:
             return self._settled(search, found)
         for some in together.pairs():  # what holds for this arm alone is not told, others may be
@@ -138,17 +140,15 @@ class _Several:
         if not found and together.usable and not search.stand:
             found = tried.likeliest(known, known.adding_up(3) + together.threes())
             found = found or tried.likeliest(known, together.any_three())
-        found = found or tried.of_ways(stages.ways(two=True, before=in_order.reached))
-        left, self.left = self.left, 1
-        found = found or self._last(search, stages.reached[: _WAYS + 1], _REACHED)
-        self.left = left
+        found = found or tried.of_ways(stages.ways(two=True))
+        found = found or self._one_more(search, stages.reached[: _WAYS + 1], _REACHED)[0]
         if found:
             return self._settled(search, found)
         most = 1 if together.thorough else _STEPS - 1
         firsts = in_order.reached[:most]
         if not firsts:
-            edits = [edits[0] for edits in known.alike]
-            steps = Witnesses(search).steps(edits, search.most // _WATCHING)
+            ways: list[Way] = [(edits[0],) for edits in known.alike]
+            steps = Witnesses(search).steps(ways, search.most // _WATCHING)
             firsts = [(edit,) for edit in _apart([step.edits[0] for step in steps])[:most]]
         found = self._after(search, firsts)
         if found:
@@ -172,26 +172,38 @@ class _Several:
             found = self._settled(search, found)
         return found
 
-    def _last(
-        self, search: LineSearch, ways: list[Way], alone: int = _ALONE
-    ) -> list[ProgramRepair]:
+    def _last(self, search: LineSearch, ways: list[Way]) -> list[ProgramRepair]:
+        """The one edit more with which all is right, if there is work left for it."""
+        found, done = self._one_more(search, ways if self.left > 0 else [], _ALONE)
+        self.left -= done
+        return found
+
+    @staticmethod
+    def _one_more(
+        search: LineSearch, ways: list[Way], alone: int
+    ) -> tuple[list[ProgramRepair], int]:
         """The one edit more with which all is right, beside those of one of some ways.
 
         Args:
             search: the program.
             ways: edits that stand.
             alone: work for those that are run alone, beside which further ones are run in lanes.
+
+        Returns:
+            What was found, and what it counts as work.
         """
-        for way in ways if self.left > 0 else ():
+        found: list[ProgramRepair] = []
+        done = 0
+        for way in ways:
             with changed(search.trial, way):
                 here = _beside(search, way)
                 here.most = alone
                 here.in_lanes = _IN_LANES if len(way) < _DEEPEST else _BESIDE_TWO
                 found = here.singles()
-                self.left -= min(here.work.done, _IN_LANES) // _WAYS
+                done += min(here.work.done, _IN_LANES) // _WAYS
             if found:
-                return found
-        return []
+                break
+        return found, done
 
     def _fewer(self, search: LineSearch, found: list[ProgramRepair]) -> list[ProgramRepair]:
         """A repair of three edits or more, with one for two of them where one does as well."""
@@ -208,9 +220,8 @@ class _Several:
         own = found[0].edits if found and len(found[0].edits) > _DEEPEST else ()
         for two in combinations(own, 2):
             if DATA not in (two[0].part, two[1].part) and row_of(two[0]) == row_of(two[1]):
-                self.left = max(self.left, 1)
                 rest = tuple(edit for edit in own if edit not in two)
-                better = self._last(search, [rest])
+                better, _done = self._one_more(search, [rest], _ALONE)
                 if better:
                     return better
         return found

@@ -6,6 +6,7 @@ terms in the accelerations alone.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -90,13 +91,20 @@ class AtRest:
         )
 
 
+def moving_alone(arguments: dict[str, Array], some: Sequence[str]) -> dict[str, Array]:
+    """The same states where of all that moves, or pushes, there are some arguments alone."""
+    return {
+        name: np.zeros_like(x) if name in MOVING and name not in some else x
+        for name, x in arguments.items()
+    }
+
+
 def _states(arguments: dict[str, Array]) -> dict[str, Array]:
     """The first state at rest, and with each of its motions alone; without motions other poses."""
     moving = [name for name in arguments if name in MOVING]
     here = {name: stack[:1] for name, stack in arguments.items()}
     if moving:
-        still = {name: np.zeros_like(x) if name in moving else x for name, x in here.items()}
-        blocks = [still, *({**still, name: here[name]} for name in moving)]
+        blocks = [moving_alone(here, some) for some in ([], *([name] for name in moving))]
         return {name: np.concatenate([block[name] for block in blocks]) for name in here}
     if [*arguments] != ["q"] or here["q"].ndim != 2:
         return {}

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.doctor.glossary.textbook import Row
 from kinlab.doctor.program.grounds.evidence import zeros_and_ones
 from kinlab.doctor.program.grounds.suspects import TERM, OddValue, odd_values
 from kinlab.doctor.program.lanes.run import InLanes
@@ -67,6 +68,7 @@ class TwoOfOne:
         seen = search.observed.of(odd.value)
         if shape is None or seen is None or shape not in search.known[0].things:
             return []
+        things = _Quantities(*search.known[0].things[shape])
         alike = [[edit] for edit in self.likely]
         states = search.asked.states[:1]
         self.done += _WEAVING
@@ -88,35 +90,43 @@ class TwoOfOne:
             self.done += lanes.work - before
             if len(met) <= odd.turn or met[0].shape[1] != int(np.prod(shape, initial=1)):
                 break
-            good = sum(self._known(values, shape).astype(int) for values in met)
-            good = np.where(self._known(met[odd.turn], shape), good, 0)
-            for k in np.flatnonzero(good).tolist():
+            told = np.array([things.known(values) for values in met])
+            good = told.sum(axis=0)
+            for k in np.flatnonzero(told[odd.turn]).tolist():
                 i, j = every[start + k]
                 found.append((-int(good[k]), start + k, (self.likely[i], self.likely[j])))
         found.sort(key=lambda one: one[:2])
         return [way for *_rank, way in found[:_TOLD]]
 
-    def _known(self, values: Array, shape: tuple[int, ...]) -> Any:
-        """Which of some values are a textbook's quantities, and no terms of these alone, (C,)."""
-        rows, things = self.search.known[0].things[shape]
+
+class _Quantities:
+    """The quantities of a textbook of one shape: no terms of these alone.
+
+    Args:
+        rows, things: what they are, and their values, stacked.
+    """
+
+    def __init__(self, rows: Sequence[Row], things: Array) -> None:
         own = [k for k, (rank, _sense) in enumerate(rows) if rank < TERM]
-        flat = things[own].reshape(len(own), -1)
-        if not own:
+        self.values = things[own].reshape(len(own), things[0].size)
+        self.weights = np.random.default_rng(5).uniform(0.5, 1.5, things[0].size)
+        marks = self.values @ self.weights
+        self.marks = np.sort(np.concatenate([marks, -marks]))
+
+    def known(self, values: Array) -> Any:
+        """Which of some values are one of them, or minus one, (C,)."""
+        if not len(self.marks):
             return np.zeros(len(values), dtype=bool)
-        weights = np.random.default_rng(5).uniform(0.5, 1.5, flat.shape[1])
-        marks = np.sort(np.concatenate([flat @ weights, -(flat @ weights)]))
         known = np.isfinite(values).all(axis=1)
         size = np.abs(values).max(axis=1, initial=0.0, where=np.isfinite(values))
         near = TOLERANCES.same_relation * size
-        mark, wide = values @ weights, near * float(weights.sum())
-        low = np.searchsorted(marks, mark - wide)
-        known &= low < len(marks)
-        known &= marks[np.minimum(low, len(marks) - 1)] <= mark + wide
-        for k in np.flatnonzero(known):
-            known[k] = not zeros_and_ones(values[k]) and self._is_one(values[k], flat, near[k])
+        mark, wide = values @ self.weights, near * float(self.weights.sum())
+        low = np.searchsorted(self.marks, mark - wide)
+        known &= low < len(self.marks)
+        known &= self.marks[np.minimum(low, len(self.marks) - 1)] <= mark + wide
+        for k in np.flatnonzero(known):  # one number of each has told most
+            gaps = np.minimum(
+                *(np.abs(self.values - x).max(axis=1) for x in (values[k], -values[k]))
+            )
+            known[k] = not zeros_and_ones(values[k]) and gaps.min() <= near[k]
         return known
-
-    @staticmethod
-    def _is_one(value: Array, flat: Array, near: float) -> bool:
-        gaps = np.minimum(np.abs(flat - value).max(axis=1), np.abs(flat + value).max(axis=1))
-        return bool(gaps.min() <= near)

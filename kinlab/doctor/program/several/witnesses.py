@@ -10,7 +10,7 @@ from __future__ import annotations
 import ast
 import copy
 from bisect import bisect_left
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from typing import Any
@@ -103,34 +103,17 @@ class Witnesses:
         self.marks = {shape: _marks(self.grounds.known, shape) for shape in _SHAPES}
         self.there = search.observed.values(len(search.asked.watched))
         self.places = [place for tree in search.trial.trees for place in _places(tree)]
+        self.numbers = {(id(holder), field): n for n, (holder, field) in enumerate(self.places)}
 
-    def steps(self, edits: Sequence[ProgramEdit], most: int) -> list[FirstStep]:
-        """The edits that make statements right and spoil none, as many as some work allows.
+    def steps(self, ways: Sequence[Way], most: int) -> list[FirstStep]:
+        """Those that make statements right and spoil none, as many as some work allows.
 
         The likeliest come first, those with which more is right as if they were likelier.
+
+        Args:
+            ways: an edit each, or two.
+            most: operations that may be done.
         """
-        numbers = {(id(holder), field): n for n, (holder, field) in enumerate(self.places)}
-        watched = {edit: _watched(edit, numbers) for edit in edits}
-        variants = Variants(self.search.trial, [*watched.values()])
-
-        def stands(way: Way) -> AbstractContextManager[None]:
-            one = watched[way[0]]
-            return self.search.trial.changed({one.part}, one.changes, variants.of(one))
-
-        return self._looked([(edit,) for edit in edits], stands, most)
-
-    def steps_of_two(self, pairs: Sequence[Way], most: int) -> list[FirstStep]:
-        """The same of two edits at a time."""
-        numbers = {(id(holder), field): n for n, (holder, field) in enumerate(self.places)}
-
-        def stands(way: Way) -> AbstractContextManager[None]:
-            return changed(self.search.trial, tuple(_watched(edit, numbers) for edit in way))
-
-        return self._looked(pairs, stands, most)
-
-    def _looked(
-        self, ways: Sequence[Way], stands: Callable[[Way], AbstractContextManager[None]], most: int
-    ) -> list[FirstStep]:
         trial = self.search.trial
         if not self.grounds.known or not self.places:
             return []
@@ -138,12 +121,14 @@ class Witnesses:
         with trial.changed({*range(len(trial.trees))}, self._saws()):
             before = self._right()
             self.known, self.watching = {}, True
-            for way in ways:
+            watched = [tuple(_watched(edit, self.numbers) for edit in way) for way in ways]
+            variants = Variants(trial, [way[0] for way in watched if len(way) == 1])
+            for way, own in zip(ways, watched, strict=True):
                 self.done += sum(map(self.cost_of, way))
                 if self.done > (most if found else most // _FRUITLESS):
                     break
                 try:
-                    with stands(way):
+                    with self._standing(own, variants):
                         after = self._right()
                 except NoProgramError:
                     continue
@@ -153,6 +138,12 @@ class Witnesses:
                     cost = sum(map(self.search.likely, way)) - _STATEMENT * (gained + some)
                     found.append(FirstStep(way, cost, bool(gained)))
         return sorted(found, key=lambda step: (not step.whole, step.cost))
+
+    def _standing(self, way: Way, variants: Variants) -> AbstractContextManager[None]:
+        if len(way) > 1:
+            return changed(self.search.trial, way)
+        (one,) = way
+        return self.search.trial.changed({one.part}, one.changes, variants.of(one))
 
     def cost_of(self, edit: ProgramEdit) -> int:
         """What watching the program with an edit amounts to."""

@@ -259,23 +259,26 @@ def _moves_left_out(
     sizes = {1: [typed(x) for x in sorted(angles)]}
     others = [number(x) for x in lengths[:_LEFT_OUT]]
     moves = [
-        (observed.shape(call), ast.Call(call.func, given, []))
-        for call in calls.values()
+        (name, observed.shape(call), ast.Call(call.func, _zeros_but(x, k, len(call.args)), []))
+        for name, call in calls.items()
         for k in range(len(call.args))
         for x in sizes.get(len(call.args), others)
-        for given in [[x if n == k else number(0) for n in range(len(call.args))]]
     ]
     for part, tree in enumerate(trial.trees) if moves else ():
         for here in places(part, tree):
             set_ = isinstance(here.parent, ast.Assign | ast.Return) and here.field == "value"
-            calls_ = [x for x in nodes(here.node) if isinstance(x, ast.Call)] if set_ else []
-            there = {ast.unparse(x.func) for x in calls_}
-            for shape, move in moves if calls_ else ():
-                if observed.shape(here.node) == shape and ast.unparse(move.func) not in there:
+            inner = nodes(here.node) if set_ else ()
+            there = {ast.unparse(x.func) for x in inner if isinstance(x, ast.Call)}
+            for name, shape, move in moves if there else ():
+                if observed.shape(here.node) == shape and name not in there:
                     for both in ((here.node, move), (move, here.node)):
                         new = ast.BinOp(both[0], ast.MatMult(), both[1])
                         edit = here.instead(new, "missing matrix", _MOVED)
                         yield replace(edit, of_the_arm=True)
+
+
+def _zeros_but(value: ast.expr, at: int, count: int) -> list[ast.expr]:
+    return [value if n == at else number(0) for n in range(count)]
 
 
 def _begun_at_the_base(trial: Trial, observed: Observed, table: DHTable) -> Iterator[ProgramEdit]:
