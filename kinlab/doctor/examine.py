@@ -261,9 +261,13 @@ def _possible(
                 some = looking if not (near and program.stepping) else ()
                 edited = [c for more in some for c in _exactly(more.causes, worst)]
                 edited = [c for c in edited if not near or _OF_NUMBERS >= {*c.kinds}]
-            elif exact and program.odd and not program.written_out:
-                # a number that is wrong, too, may do nothing as long as a frame is another
-                edited = [c for more in looking for c in _exactly(behind(more, exact), worst)]
+            elif exact and not program.written_out:
+                # two lines may do it together; and a number that is wrong, too, may do nothing as
+                # long as a frame is another
+                for more in looking:
+                    two = [c for c in more.causes if len(c.kinds) <= _SLIPS]
+                    hidden = behind(more, exact) if program.odd else []
+                    edited = _exactly(hidden or two, worst)
         if program is not None and edited:
             read_so = [] if program.written_out else exact or rough
             plain = [cause for cause in read_so if cause.cost <= _FETCHED]

@@ -460,7 +460,7 @@ def sides(text: str, place: str = "expression") -> tuple[str, str]:
     return left, f"${right}$" if typeset else right
 
 
-_NAMED_NEXT = r"(?=[\\\w{}]{1,40}(?:\(q\)|\^\{?2\}?|\*\*2)?\s*&?\s*:?=)"
+_NAMED_NEXT = r"(?=(?:\\d?dot\s+)?[\\\w{}]{1,40}(?:\(q\)|\^\{?2\}?|\*\*2)?\s*&?\s*:?=)"
 _AND = r"(?:and|和|且)(?=\s)"
 _SPACES = r"\s|~|\\[,;:! ]|\\q?quad(?![A-Za-z])"
 _NEXT = re.compile(
@@ -802,6 +802,8 @@ def of_one_name(left: str, name: str) -> bool:
         return True
     if places != wanted and (places or wanted not in ("", "1")):
         return False
+    if mine == "r" and head in _POSES:
+        return True  # the rotation of a transform: T12 of R12
     return head == mine or not known or any(mine in group for group in known)
 
 

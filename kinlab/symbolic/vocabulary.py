@@ -118,7 +118,7 @@ def _planar_lengths(words: Vocabulary, table: DHTable) -> None:
             words.put(f"a{i}", f"l{i}", length)
             centre, behind = float(np.asarray(link.com)[0]) + length, length
         from_joint = _centre(words, i, centre, length)
-        words.others |= dict.fromkeys((f"lc{i}", f"r{i}"), from_joint)
+        words.others |= dict.fromkeys((f"lc{i}", f"lg{i}", f"r{i}"), from_joint)
         minus = ((Fraction(-1), f"l{i}"),) if behind else ()
         words.entries[f"com{i}x"] = _add(from_joint, minus)
         words.entries[f"com{i}y"] = words.entries[f"com{i}z"] = ()
@@ -225,7 +225,7 @@ def _as_in_books(words: Vocabulary, i: int, link: DHLink, behind: str, modified:
     along = () if modified else words.entries[f"a{i}"]
     if len(centre) == 1 and (modified or centre[0] == words.entries[f"com{i}x"] or not length):
         from_joint = _add(along, centre[0]) if along else centre[0]
-        words.others |= dict.fromkeys((f"lc{i}", f"r{i}"), from_joint)
+        words.others |= dict.fromkeys((f"lc{i}", f"lg{i}", f"r{i}"), from_joint)
         if not length:
             words.others[f"l{i}"] = from_joint
     moments = {words.entries[f"inertia{i}{axis}{axis}"] for axis in _AXES} - {()}

@@ -421,3 +421,58 @@ def test_words_in_front_that_say_what_a_name_means_are_no_dress(words: str) -> N
     """A right formula of other angles would be called wrong, and nothing said of the words."""
     with pytest.raises(ExpressionError, match="in front of the formula"):
         kl.diagnose("planar2r", "x", f"{words}x = l1*c1 + l2*c2")
+
+
+# -------- Several formulas in one sentence, and marks above letters
+
+
+ROD = r"均质细杆绕端点的转动惯量为 $I_O = \frac{1}{3}ml^2$，所以 $\tau = I_O\ddot q + mg\frac{l}{2}\cos q$"
+TIP = r"由 $x = l_1c_1+l_2c_{12}$ 对 $\theta_1$ 求偏导，得 $J_{11} = -l_1s_1-l_2s_{12}$"
+SPEEDS = (
+    r"T = \frac{1}{2}m_1(\dot x_1^2+\dot y_1^2) + \frac12 m_2(\dot x_2^2+\dot y_2^2), where"
+    "\n"
+    r"\dot x_1 = -l_1 s_1\dot\theta_1, \dot y_1 = l_1c_1\dot\theta_1,"
+    "\n"
+    r"\dot x_2 = -l_1s_1\dot\theta_1 - l_2s_{12}(\dot\theta_1+\dot\theta_2), "
+    r"\dot y_2 = l_1c_1\dot\theta_1 + l_2c_{12}(\dot\theta_1+\dot\theta_2)"
+)
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "text"),
+    [
+        ("single_link", "tau1", ROD),
+        ("planar2r", "J11", TIP),
+        ("planar2r", "J11", "$x = l_1c_1+l_2c_{12}$\n$J_{11} = -l_1s_1-l_2s_{12}$"),
+        ("planar2r", "T", SPEEDS),
+        ("planar2r", "M22", r"M_{22} = \mathfrak{m}_2 L_2^2"),
+        ("ur5", "R33", "T[2,2] = -np.sin(q[1]+q[2]+q[3])*np.sin(q[4])"),
+        ("single_link", "V", "V = -m g (l/2) (1 - sin q)"),
+    ],
+)
+def test_a_sentence_with_formulas_is_read(robot, entry, text) -> None:
+    right(robot, entry, text)
+
+
+def test_a_mark_above_a_letter_is_told() -> None:
+    text = (
+        r"M_{11} = m_1 l_{g1}^2 + \tilde I_1 + m_2(l_1^2 + l_{g2}^2 + 2l_1 l_{g2} C_2) + \tilde I_2"
+    )
+    found = right("planar2r_rods", "M11", text)
+    assert r"\tilde I is read without the mark" in str(found)
+
+
+def test_a_letter_with_and_without_a_mark_is_refused() -> None:
+    refused("planar2r_rods", "M22", r"M_{22} = \bar I_2 + m_2 l_{c2}^2 + I_2 - I_2")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "When $q_1 = 0$ the tip is at $x = l_1c_1+l_2c_{12}$",
+        "$x = l_1c_1$ is wrong; right is $x = l_1c_1+l_2c_{12}$",
+        "$q_2$ is measured from the base: $x_e = l_1c_1$, $x = x_e+l_2c_2$",
+    ],
+)
+def test_a_sentence_that_says_more_is_refused(text) -> None:
+    refused("planar2r", "x", text)

@@ -41,6 +41,24 @@ def plain_letters(text: str, place: str) -> str:
     return _FRACTION.sub(lambda found: _fraction(found, place), text)
 
 
+_MARK = r"\\(?:tilde|widetilde|bar|overline|hat|widehat|check)(?![A-Za-z])\s*"
+_MARKED = re.compile(rf"{_MARK}(?:\{{\s*([A-Za-z])\s*\}}|([A-Za-z])(?![A-Za-z]))")
+
+
+def without_marks(text: str) -> tuple[str, str]:
+    r"""Letters without a mark above, ``I_1`` of ``\tilde I_1``, and what is to be said of it.
+
+    Where a letter stands with a mark and without, all stay as they are.
+    """
+    marked = {found[1] or found[2]: found[0] for found in _MARKED.finditer(text)}
+    rest = _MARKED.sub(" ", text)
+    if not marked or any(re.search(rf"(?<![A-Za-z\\]){x}(?![A-Za-z])", rest) for x in marked):
+        return text, ""
+    shown = ", ".join(re.sub(r"\s+", " ", one) for one in marked.values())
+    said = _("{marked} is read without the mark").format(marked=shown)
+    return _MARKED.sub(lambda found: f" {found[1] or found[2]}", text), said
+
+
 def _below(found: re.Match[str]) -> str:
     inside = found[1]
     return inside.translate(_SUBSCRIPT) if inside.isdigit() else f"_{inside}"

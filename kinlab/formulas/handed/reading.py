@@ -8,7 +8,7 @@ from kinlab.formulas.handed.code import without_code
 from kinlab.formulas.handed.columns import of_column
 from kinlab.formulas.handed.constants import without_constant
 from kinlab.formulas.handed.dressed import undressed
-from kinlab.formulas.handed.letters import plain_letters
+from kinlab.formulas.handed.letters import plain_letters, without_marks
 from kinlab.formulas.handed.rates import plain_rates
 from kinlab.formulas.handed.units import without_units
 from kinlab.formulas.handed.words import without_words
@@ -36,9 +36,10 @@ def as_formula(text: str, entry: str, place: str) -> tuple[str, str]:
         ExpressionError: what can be read in two ways.
     """
     text = _GAP.sub(lambda gap: "\n" if "\n" in gap[0] else " ", plain_letters(text, place))
+    text, marks = without_marks(text)
     text = without_code(text, bool(_ALONE.fullmatch(entry)))
     text = undressed(text, entry)
     text = without_words(text, entry, place)
     text = plain_rates(text)
     text, said = without_constant(without_units(text, entry, place), entry)
-    return of_column(text, entry, place), said
+    return of_column(text, entry, place), "; ".join(filter(None, (marks, said)))

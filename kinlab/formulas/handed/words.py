@@ -56,6 +56,8 @@ _HARMLESS_CHINESE = re.compile(
 _AN_ANGLE = re.compile(r"\bangles?\b|winkel|角", re.IGNORECASE)
 _A_LINK = re.compile(r"\blinks?\b|\bglied|连杆|杆", re.IGNORECASE)
 _A_JOINT = re.compile(r"\bjoints?\b|gelenk|关节", re.IGNORECASE)
+_A_STATE = re.compile(r"(?:q|th|theta|θ|ϑ)_?\d*")
+"""What an equation sets that tells of a pose: ``q_1 = 0``."""
 _NAMES = re.compile(r"(?:\\?[A-Za-zα-ω]\w{0,6}(?:_?\{\w{1,4}\}|[₀-₉]{1,2})?(?![A-Za-z])|\d+)")
 _EXPLAINS = re.compile(
     r"其中|式中|这里|竖直|铅垂|水平|夹角|绝对|相对|量起|角度制"
@@ -96,7 +98,14 @@ def _inline(text: str) -> tuple[str, bool]:
     if "$" not in text:
         return text, False
     outside = _DOLLARS.sub(" ", text)
-    if "$" in outside or _NO_WORDS.search(outside) or not _INLINE.search(outside):
+    if "$" in outside or _NO_WORDS.search(outside):
+        return text, False
+    equations = [found[2].strip() for found in _DOLLARS.finditer(text) if "=" in found[2]]
+    left = [re.sub(r"[\s{}\\&]", "", one.partition("=")[0]) for one in equations]
+    told = not _EXPLAINS.search(outside) and not any(map(_A_STATE.fullmatch, left))
+    if len(equations) > 1 and len({*left}) == len(left) and told:
+        return "\n".join(equations), True
+    if not _INLINE.search(outside):
         return text, False
     return _DOLLARS.sub(lambda found: f" {found[2]} ", text).strip(), True
 

@@ -15,7 +15,7 @@ _TOKEN = re.compile(
     r"\s*(?:(?P<number>\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+)|(?P<name>[A-Za-z_]\w*)"
     r"|(?P<sign>\*\*|[-+*/^(),]))"
 )
-_ANGLE = re.compile(r"(?:q|th|theta)_?[1-9]\d?")
+_ANGLE = re.compile(r"(?:q|th|theta)(?:_?[1-9]\d?)?")
 _WAVES = {"sin", "cos", "tan"}
 _FOLLOWING = re.compile(r"\s*[-+]\s*(?:q|th|theta)_?\d")
 _WHOLE = re.compile(r"\d+")

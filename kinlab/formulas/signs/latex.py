@@ -18,7 +18,7 @@ _LENGTH = 20_000
 _NESTING = 40
 
 _WORD = (
-    r"\\(?:mathrm|mathcal|mathit|mathsf|mathbf|boldsymbol|bm|text|textrm|textit|operatorname)"
+    r"\\(?:mathrm|mathcal|mathit|mathsf|mathbf|mathfrak|boldsymbol|bm|text|textrm|textit|operatorname)"
     r"(?![A-Za-z])\*?\s*\{[A-Za-z0-9_ ]*\}"
 )
 _TOKEN = re.compile(

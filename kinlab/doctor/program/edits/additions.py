@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from math import pi
 
 from kinlab.doctor.bytecode.syntax import called, copied, factors, names, nodes
+from kinlab.doctor.program.edits import chains
 from kinlab.doctor.program.edits.scope.forms import Turned, statement_of, stem_of, summands
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.observed import Shape
@@ -103,13 +104,15 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         given = isinstance(outer, ast.Assign | ast.Return)
         alone = isinstance(node, ast.Name | ast.Subscript | ast.Attribute) and given
         cost = 1.06 if alone else 1.0 if first or entry else 1.03 if whole else 1.1
-        yield here.instead(ast.UnaryOp(ast.USub(), node), "sign", cost)
+        yield here.instead(chains.opposite(node), "sign", cost)
     below = isinstance(op, ast.Div) and here.field == "right"
     if (summand or listed or trig or below) and not isinstance(node, ast.Constant):
         passed = isinstance(parent, ast.Return) and not isinstance(node, ast.BinOp)
         counted = isinstance(_leftmost(node), ast.Constant)
         for value in (2, 0.5, *([_THRICE] * (isinstance(node, ast.Name) and not trig))):
-            times = ast.BinOp(number(value), ast.Mult(), node)
+            named = isinstance(node, ast.BinOp) and not isinstance(node.right, ast.Constant)
+            times = chains.part_of(node, 2) if value < 1 and named else None
+            times = times or chains.times(number(value), node)
             rare = trig or value == _THRICE or _keeps(parent, node)
             cost = 1.15 if rare else 1.05 + _ODD * (passed or counted)
             cost = _MIXED if value == 2 and _is_mixed(here) else cost
@@ -289,7 +292,7 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
     power = isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.Pow)
     named = isinstance(node, ast.Name | ast.Subscript)
     beside = _factors_beside(here) if term else set()
-    if named and not power and (operated or term):
+    if isinstance(node, ENTRIES) and not power and (operated or term):
         yield here.instead(ast.BinOp(node, ast.Pow(), number(2)), "power", 1.08)
     if term:
         yield from _two_factors(here, scope)
@@ -313,6 +316,8 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
                 new = ast.BinOp(node, ast.Mult(), square)
                 yield here.instead(new, "missing factor", 1.12 + dear)
         elif named and operated and (text[0] == own[0] or not dear):
+            both = sorted((own, text))  # a sum that stands elsewhere, as it is written there
+            dear = 0.0 if " + ".join(both) in scope.pieces_here(()) else dear
             for op, cost in ((ast.Add(), 1.0), (ast.Sub(), 1.05)):
                 new = ast.BinOp(node, op, scalar)
                 yield here.instead(new, "missing term", cost + dear)

@@ -36,6 +36,39 @@ def joined(first: ast.expr, others: Others) -> ast.expr:
     return first
 
 
+def opposite(node: ast.expr) -> ast.expr:
+    """With the other sign: ``b - a`` of ``a - b``, ``-a*b`` of ``a*b``, else ``-(a + b)``."""
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult | ast.Div):
+        first, factors = chain(node, (ast.Mult, ast.Div))
+        return joined(ast.UnaryOp(ast.USub(), first), factors)
+    first, terms = chain(node, SUMS)
+    taken = [term for op, term in terms if isinstance(op, ast.Sub)]
+    if not taken or isinstance(first, ast.UnaryOp):
+        return ast.UnaryOp(ast.USub(), node)
+    added = [first, *(term for op, term in terms if isinstance(op, ast.Add))]
+    more = [(ast.Add(), term) for term in taken[1:]]
+    return joined(taken[0], [*more, *((ast.Sub(), term) for term in added)])
+
+
+def times(number: ast.expr, node: ast.expr) -> ast.BinOp:
+    """A number times something: of a product of vectors in front, ``0.5*w @ I @ w``."""
+    first, factors = chain(node, (ast.MatMult,))
+    if not factors or not isinstance(first, _NAMES):
+        return ast.BinOp(number, ast.Mult(), node)
+    more: ast.expr = joined(ast.BinOp(number, ast.Mult(), first), factors)
+    assert isinstance(more, ast.BinOp)
+    return more
+
+
+def part_of(node: ast.expr, count: int) -> ast.BinOp | None:
+    """A quotient by a whole number more: ``a/(2*b)`` of ``a/b``; None of what is none."""
+    if not isinstance(node, ast.BinOp) or not isinstance(node.op, ast.Div):
+        return None
+    below, factors = chain(node.right, (ast.Mult,))
+    more = joined(ast.Constant(count), [(ast.Mult(), below), *factors])
+    return ast.BinOp(node.left, ast.Div(), more)
+
+
 def together(node: ast.BinOp) -> Iterator[ast.expr]:
     """``a*(b + c)`` and ``(a + b)*c`` of sums in which the parentheses are left out."""
     head, terms = chain(node, SUMS)

@@ -40,7 +40,7 @@ from kinlab.doctor.program.edits.single.rows import of_letters, of_sequence
 from kinlab.doctor.program.edits.single.whole import plus, shifted, value_of, whole_constant
 from kinlab.doctor.program.edits.subscripts import of_subscripts
 from kinlab.doctor.program.observed import Observed, Seen
-from kinlab.doctor.program.places import Here, ProgramEdit, number, paired, places
+from kinlab.doctor.program.places import Here, ProgramEdit, follow, number, paired, places
 from kinlab.doctor.program.trial import Trial
 from kinlab.tolerances import TOLERANCES
 
@@ -58,6 +58,8 @@ _BOTH = 1.14
 """What an inverse's transpose for a transpose is far-fetched."""
 _SUMMED = 0.06
 """What a sign or factor costs more in a sum of names, each of which has a line of its own."""
+_ENTRIES = ast.Name | ast.Subscript | ast.Attribute
+"""What a term more may be, of which one more is rather a factor 2."""
 _ROWS = 6
 """Rows of as many joints of which any may share out what is added to one entry."""
 
@@ -83,8 +85,12 @@ def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[Pro
                         every = (*(_unchanged(x, own) for x in every),)
                     if _says_where(here):
                         every = (*(replace(x, cost=max(x.cost, _WRITTEN)) for x in every),)
-                    beside = _rotations_beside(here, observed)
-                    found += [x for x in every if not (beside and _undoes(x, beside))]
+                    beside, terms = _rotations_beside(here, observed), _terms_beside(here)
+                    found += [
+                        _in_order(x)
+                        for x in every
+                        if not (beside and _undoes(x, beside)) and not _once_more(x, terms)
+                    ]
                 elif isinstance(node, ast.Constant) and isinstance(node.value, str):
                     found += of_letters(here)
                     found += of_subscripts(here, observed, scope)
@@ -103,6 +109,37 @@ def _set_here(here: Here) -> list[str]:
         return []
     pairs = (pair for target in line.targets for pair in paired(target, line.value))
     return [one.id for one, what in pairs if what is here.node and isinstance(one, ast.Name)]
+
+
+def _terms_beside(here: Here) -> set[str]:
+    """The terms of the sum in which an expression is one, itself among them."""
+    whole: ast.AST = here.node
+    for above in reversed(here.above):
+        if not isinstance(above, ast.BinOp) or not isinstance(above.op, ast.Add | ast.Sub):
+            break
+        whole = above
+    return {ast.unparse(one) for one in summands(whole)} if isinstance(whole, ast.expr) else set()
+
+
+def _once_more(edit: ProgramEdit, terms: set[str]) -> bool:
+    """Whether an edit puts a term into a sum that is there: it has a factor 2, or is left out."""
+    new = edit.changes[0].new
+    if edit.kind != "missing term" or not isinstance(new, ast.BinOp):
+        return False
+    put = [one for one in (new.left, new.right) if one is not edit.node]
+    return len(put) == 1 and isinstance(put[0], _ENTRIES) and ast.unparse(put[0]) in terms
+
+
+def _in_order(edit: ProgramEdit) -> ProgramEdit:
+    """An edit with the first of two names in front: ``w1 + w2`` for ``w2``."""
+    new = edit.changes[0].new
+    if edit.kind != "missing term" or not isinstance(new, ast.BinOp):
+        return edit
+    turned = isinstance(new.op, ast.Add) and follow(new.left, new.right)
+    if not turned or ast.unparse(new.left) < ast.unparse(new.right):
+        return edit
+    change = replace(edit.changes[0], new=ast.BinOp(new.right, new.op, new.left))
+    return replace(edit, changes=(change, *edit.changes[1:]))
 
 
 def _unchanged(edit: ProgramEdit, own: list[str]) -> ProgramEdit:

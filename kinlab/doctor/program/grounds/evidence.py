@@ -20,7 +20,7 @@ from kinlab.doctor.bytecode.syntax import called, factors, names, nodes
 from kinlab.doctor.glossary.meaning import as_vector
 from kinlab.doctor.glossary.textbook import Glossary, Row, Sense
 from kinlab.doctor.program.edits.scope.forms import summands
-from kinlab.doctor.program.grounds.called import unlike
+from kinlab.doctor.program.grounds.called import kinds_called, unlike
 from kinlab.doctor.program.grounds.helpers import true_helpers
 from kinlab.doctor.program.observed import Observed, Seen
 from kinlab.doctor.program.places import DATA, ProgramEdit, paired
@@ -311,6 +311,8 @@ class Grounds:
             computed = good and not isinstance(node.value, ast.Name)
             if computed and isinstance(target, ast.Name) and self.used[target.id] > 1:
                 self.shared.add(id(node.value))
+            if isinstance(target, ast.Name) and self._is_moment(target.id, node.value, observed):
+                self.right |= {id(node.value)}
             if good and not isinstance(node.value, ast.Name) and not _of_either_sign(senses):
                 self.right |= {id(inner) for inner in nodes(node)}
             near = self._is_whole(node.value, observed)
@@ -326,6 +328,17 @@ class Grounds:
                 returned.append(near or steps)
         if part and returned and all(returned):
             self.sound.add(part)
+
+    def _is_moment(self, name: str, node: ast.expr, observed: Observed) -> bool:
+        """Whether a moment of inertia is worked out, which a link of the arm's has."""
+        seen = observed.of(node)
+        if kinds_called(name) != ("moment",) or isinstance(node, ast.Constant | ast.Name):
+            return False
+        if seen is None or seen.shape != () or len({*map(float, seen.values)}) != 1:
+            return False
+        rows, gap = self.known[0].gaps(seen.values[0])
+        own = [one.what == "Izz" for _rank, one in rows]
+        return bool(gap[own].min(initial=np.inf) <= TOLERANCES.same_relation * seen.values[0])
 
     def _at_a_pass(self, node: ast.expr, observed: Observed) -> bool:
         """Whether a vector or matrix is a thing of its own at one of the passes."""
@@ -510,8 +523,15 @@ def zeros_and_ones(value: Array) -> bool:
 def _factor(edit: ProgramEdit) -> float:
     """The number by which an edit multiplies; 0 where it does something else."""
     new, old = edit.changes[0].new, 1.0
-    if isinstance(new, ast.BinOp) and isinstance(new.left, ast.Constant):
-        new = new.left.value
+    if isinstance(new, ast.BinOp) and isinstance(new.op, ast.Div):  # ``a/(2*b)``
+        below = new.right
+        while isinstance(below, ast.BinOp):
+            below = below.left
+        new, old = 1.0, getattr(below, "value", 0.0)
+    elif isinstance(new, ast.BinOp):
+        while isinstance(new, ast.BinOp):  # ``0.5*w @ I @ w``
+            new = new.left
+        new = getattr(new, "value", None)
     elif isinstance(edit.node, ast.Constant) and isinstance(edit.node.value, int | float):
         old = float(edit.node.value)
     return float(new) / old if isinstance(new, int | float) and old else 0.0

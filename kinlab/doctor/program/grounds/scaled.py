@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import ast
 import math
+import operator
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -34,7 +35,7 @@ from kinlab.doctor.program.grounds.called import kinds_called
 from kinlab.doctor.program.grounds.labels import Label, Labels
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.own.plain import attributes, home
-from kinlab.doctor.program.places import DATA, ProgramEdit
+from kinlab.doctor.program.places import DATA, ProgramEdit, changed
 from kinlab.doctor.program.read import of_numbers
 from kinlab.doctor.program.trial import Trial, named_in
 from kinlab.errors import KinlabError, already_said
@@ -56,6 +57,14 @@ _ROWS = ("array", "asarray", "diag")
 """Functions that make an array of a list."""
 _NOBODYS = (0.0, 1.0, 2.0)
 """Sizes of numbers with a name that need be nothing of an arm's."""
+_OPERATORS: dict[type[ast.operator], Callable[[Any, Any], float]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.Pow: math.pow,
+}
+"""What typed numbers are worked out with."""
 _SIMPLE = 12
 """Denominator up to which a fraction may be meant."""
 
@@ -164,7 +173,54 @@ def other_arm(
         return None
     whole = whole and len(ways) <= _WAYS and not holds_an_arm(trial)
     whole = whole and not _one_for_several(found, kinds)
-    return OtherArm(larger, tuple(ways[:_WAYS]), whole)
+    other = OtherArm(larger, tuple(ways[:_WAYS]), whole)
+    return replace(other, whole=whole and _works_out_too(trial, robot, other))
+
+
+def _works_out_too(trial: Trial, robot: Robot, other: OtherArm) -> bool:
+    """Whether what is worked out of typed numbers alone, and is the arm's, is the other's, too.
+
+    In ``2*0.4**2/12`` the 2 may be a mass that nothing tells from a plain number.
+    """
+    typed = [node for tree in trial.trees for node in _worked_out(tree)]
+    own = [node for node in typed if is_own(robot, _value(node)) and not _plain(_value(node))]
+    if not own or other.robot is None:
+        return True
+    for way in other.ways:
+        with changed(trial, way):
+            if all(is_own(other.robot, _value(node)) for node in own):
+                return True
+    return False
+
+
+def _worked_out(node: ast.AST) -> Iterator[ast.BinOp]:
+    """The largest expressions of an operator and nothing but typed numbers."""
+    inner = [*nodes(node)] if isinstance(node, ast.BinOp) else []
+    known = ast.Constant | ast.BinOp | ast.UnaryOp | ast.operator | ast.unaryop
+    if isinstance(node, ast.BinOp) and all(isinstance(one, known) for one in inner):
+        yield node
+    else:
+        for below in ast.iter_child_nodes(node):
+            yield from _worked_out(below)
+
+
+def _value(node: ast.expr) -> float:
+    """What typed numbers give; NaN where they have no value."""
+    if isinstance(node, ast.BinOp):
+        by = _OPERATORS.get(type(node.op))
+        try:
+            return by(_value(node.left), _value(node.right)) if by is not None else math.nan
+        except (ArithmeticError, ValueError):
+            return math.nan
+    if isinstance(node, ast.UnaryOp):
+        return -_value(node.operand) if isinstance(node.op, ast.USub) else math.nan
+    value = getattr(node, "value", None)
+    return float(value) if isinstance(value, int | float) else math.nan
+
+
+def _plain(value: float) -> bool:
+    """Whether a number is whole, or half of one, and need be nothing of an arm's."""
+    return float(2 * value).is_integer()
 
 
 def _one_for_several(found: Sequence[ProgramNumber], kinds: Kinds) -> bool:

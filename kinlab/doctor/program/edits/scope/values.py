@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -29,6 +30,8 @@ def shape_of(value: object) -> Shape | None:
 def named_numbers(space: dict[str, Any]) -> Iterator[tuple[str, Shape]]:
     """A module's numbers by their names, each with its shape; a number for each joint is a row."""
     for name, value in space.items():
+        if any(vars(module).get(name) is value for module in (math, np)):
+            continue  # of ``from math import *``
         of_each = isinstance(value, dict) and all(type(key) is int for key in value)
         if name[:1] != "_" and (is_number(value) or of_each):
             known = shape_of([*value.values()] if isinstance(value, dict) else value)

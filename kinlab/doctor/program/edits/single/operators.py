@@ -6,8 +6,9 @@ import ast
 from collections.abc import Iterator
 from itertools import permutations
 
-from kinlab.doctor.bytecode.syntax import called
+from kinlab.doctor.bytecode.syntax import called, names, nodes
 from kinlab.doctor.program.edits import chains
+from kinlab.doctor.program.edits.scope.forms import statement_of
 from kinlab.doctor.program.edits.single.constants import OF_A_NUMBER, POWER
 from kinlab.doctor.program.edits.single.rows import FLAT
 from kinlab.doctor.program.observed import Observed
@@ -19,6 +20,10 @@ _PAIR = 2
 """Sides of a matrix, factors that change places, arguments with a diagonal."""
 _HALVES, _TYPED = (2, 0.5), 1.045
 """Factors that stand in front, and the cost of one that does not belong there."""
+_TAKEN = 1.04
+"""Cost of taking away a cross product that is added: its vectors are rather exchanged."""
+_TURNED = 1.01
+"""Cost of parentheses behind a matrix: ``R.T @ (v + w)`` for ``R.T @ v + w``."""
 _DIVIDED = 1.2
 """Cost of a quotient for a product, or a product for a quotient."""
 DIAGONALS = ("tril", "triu", "eye", "diag")
@@ -31,7 +36,8 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
     if isinstance(op, ast.Add | ast.Sub):
         other = ast.Sub() if isinstance(op, ast.Add) else ast.Add()
         kind = "index" if index else "sign"
-        yield here.within(node, "op", other, kind, 1.1 if index else 0.98)
+        taken = isinstance(op, ast.Add) and _is_cross(right) and not _leads_elsewhere(here, right)
+        yield here.within(node, "op", other, kind, 1.1 if index else _TAKEN if taken else 0.98)
         extra = "index" if index else "extra term"
         yield here.instead(left, extra, 1.08)
         alone = right if isinstance(op, ast.Add) else ast.UnaryOp(ast.USub(), right)
@@ -42,7 +48,8 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
         if listed and isinstance(op, ast.Add):
             yield here.instead(ast.BinOp(right, op, left), "order", 1.05)
         for new in chains.together(node):
-            yield here.instead(new, "parentheses", 1.1)
+            turned = isinstance(getattr(new, "op", None), ast.MatMult)
+            yield here.instead(new, "parentheses", _TURNED if turned else 1.1)
         for new in chains.multiplied(node):
             yield here.instead(new, "operator", 1.12)
         if all(len(observed.shape(side) or ()) == 2 for side in (left, right)):
@@ -137,6 +144,25 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             yield here.instead(ast.BinOp(left.left, left.op, last), "parentheses", 1.12)
     elif isinstance(op, ast.FloorDiv) and not index:
         yield here.within(node, "op", ast.Div(), "whole division", 0.97)
+
+
+def _is_cross(node: ast.AST) -> bool:
+    return isinstance(node, ast.Call) and called(node) == "cross" and len(node.args) == _PAIR
+
+
+def _leads_elsewhere(here: Here, cross: ast.Call) -> bool:
+    """Whether another cross product of the line has the same first vector: it stands there."""
+    line = statement_of(here.above)
+    own, within = _vectors(cross.args[0]), {id(one) for one in nodes(cross)}
+    others = [x for x in nodes(line) if _is_cross(x) and id(x) not in within] if line else []
+    return any(not own.isdisjoint(_vectors(x.args[0])) for x in others if isinstance(x, ast.Call))
+
+
+def _vectors(node: ast.expr) -> set[str]:
+    """The names and entries in an expression, without what counts."""
+    inner = [one for one in nodes(node) if isinstance(one, ast.Subscript)]
+    counting = {name for one in inner for name in names(one.slice)}
+    return {*map(ast.unparse, inner), *names(node)} - counting
 
 
 def _halved(product: ast.expr) -> ast.expr | None:
