@@ -262,10 +262,11 @@ def _possible(
                 edited = [c for more in some for c in _exactly(more.causes, worst)]
                 edited = [c for c in edited if not near or _OF_NUMBERS >= {*c.kinds}]
             elif exact and not program.written_out:
-                # two lines may do it together; and a number that is wrong, too, may do nothing as
-                # long as a frame is another
-                for more in looking:
-                    two = [c for c in more.causes if len(c.kinds) <= _SLIPS]
+                # two lines may do it together, but of a convention, which is one thing; and a
+                # number that is wrong, too, may do nothing as long as a frame is another
+                whole = any("convention" in cause.kinds for cause in exact)
+                for more in looking if program.odd or not whole else ():
+                    two = [c for c in more.causes if len(c.kinds) <= _SLIPS and not whole]
                     hidden = behind(more, exact) if program.odd else []
                     edited = _exactly(hidden or two, worst)
         if program is not None and edited:
