@@ -12,12 +12,13 @@ def nodes(tree: ast.AST) -> list[ast.AST]:
     """What :func:`ast.walk` gives, in its order; in a third of its time."""
     found = [tree]
     for node in found:
+        inside = node.__dict__
         for name in node._fields:
-            value = getattr(node, name, None)
-            if isinstance(value, ast.AST):
-                found.append(value)
-            elif isinstance(value, list):
+            value = inside.get(name)
+            if type(value) is list:
                 found += [one for one in value if isinstance(one, ast.AST)]
+            elif isinstance(value, ast.AST):
+                found.append(value)
     return found
 
 

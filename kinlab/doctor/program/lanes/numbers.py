@@ -20,7 +20,8 @@ _EDIT, _ARRAY, _PICK = 300, 700, 50
 a place for its edits."""
 
 
-_PLAIN = (float, int, complex, bool)
+_FLOAT = np.dtype(float)
+_PLAIN = (float, int, np.float64, complex, bool)
 
 
 def operation(lanes: int) -> float:
@@ -45,11 +46,13 @@ class LaneGroup:
         which: the numbers of the lanes here, ascending; None for all.
     """
 
-    __slots__ = ("_chosen", "_edits", "_inner", "_rest", "_where", "size", "which")
+    __slots__ = ("_chosen", "_edits", "_inner", "_rest", "_where", "amount", "at", "size", "which")
 
     def __init__(self, chosen: Any, which: Any = None) -> None:
         self._chosen, self.which = chosen, which
         self.size = len(chosen) if which is None else len(which)
+        self.amount = _STEP + self.size // _NUMBERS
+        self.at: dict[int, list[int]] = {}
         self._edits: dict[int, Any] | None = None
         self._inner: dict[int, LaneGroup] = {}
         self._rest: dict[tuple[int, ...], LaneGroup] = {}
@@ -117,7 +120,8 @@ class Lanes:
     ) -> Any:
         """What a place of the program gives: for the lanes of its edits what these make of it.
 
-        Without a function for them these lanes are lost.
+        Without a function for them these lanes are lost. A place gives the same sequence of edits
+        each time, which lives as long as the lanes do.
         """
         if self.work > self.most:
             raise TooMuchError
@@ -127,13 +131,14 @@ class Lanes:
             value = old()
         except NameError:  # a line more sets it for the first time
             value = None
-        known = here.edits
-        if known.keys().isdisjoint(edits):
+        some = here.at.get(id(edits))
+        if some is None:
+            known = here.edits
+            some = here.at[id(edits)] = [edit for edit in edits if edit in known]
+        if not some:
             return value
         found: Edited = []
-        for edit in edits:
-            if edit not in known:
-                continue
+        for edit in some:
             inner = here.inner(edit)
             self.work += _EDIT
             if new is None:
@@ -204,13 +209,16 @@ class Lanes:
                 self.lose(place)
         if not numbers:
             return value
-        kind = np.result_type(float, values_in(value, self.here), *(new for _place, new in numbers))
-        values = np.empty(self.here.size, dtype=kind)
-        values[:] = values_in(value, self.here)
+        here = self.here
+        own = values_in(value, here)
+        plain = _is_real(own) and all(_is_real(new) for _place, new in numbers)
+        kind = float if plain else np.result_type(float, own, *(new for _place, new in numbers))
+        values = np.empty(here.size, dtype=kind)
+        values[:] = own
         for place, new in numbers:
-            values[place.where(self.here)] = new
-        self.work += _STEP + len(values) // _NUMBERS
-        return Laned(values, self, self.here)
+            values[place.where(here)] = new
+        self.work += here.amount
+        return Laned(values, self, here)
 
     def _fields(self, value: dict[Any, Any], found: Edited) -> dict[Any, Any]:
         same: Edited = []
@@ -253,7 +261,13 @@ def _same(one: Any, other: Any) -> bool:
 
 def is_number(value: Any) -> bool:
     """Whether it is one number, with lanes or without."""
-    return isinstance(value, Laned | int | float | complex | np.number)
+    return isinstance(value, _NUMBER)
+
+
+def _is_real(value: Any) -> bool:
+    """Whether it is a real number, or an array of these."""
+    kind = type(value)
+    return kind is float or kind is int or getattr(value, "dtype", None) is _FLOAT
 
 
 def values_in(value: Any, place: LaneGroup) -> Any:
@@ -277,7 +291,7 @@ def _both(operate: Callable[[Any, Any], Any], turned: bool = False) -> Any:
         else:
             return NotImplemented
         values = self.values if self.place is here else self.within(here)
-        lanes.work += _STEP + here.size // _NUMBERS
+        lanes.work += here.amount
         return Laned(operate(others, values) if turned else operate(values, others), lanes, here)
 
     return operated
@@ -291,22 +305,27 @@ def _entries(operate: Callable[[Any, Any], Any], one: Laned, turned: bool) -> An
 
 def _plus(turned: bool = False) -> Any:
     operated = _both(operator.add, turned)
-    return lambda self, other: self if _is(other, 0) else operated(self, other)
+
+    def plus(self: Laned, other: Any) -> Any:
+        kind = type(other)
+        return self if (kind is float or kind is int) and other == 0 else operated(self, other)
+
+    return plus
 
 
 def _times(turned: bool = False) -> Any:
     operated = _both(operator.mul, turned)
 
     def times(self: Laned, other: Any) -> Any:
-        if _is(other, 0):
-            return 0.0
-        return self if _is(other, 1) else operated(self, other)
+        kind = type(other)
+        if kind is float or kind is int:
+            if other == 0:
+                return 0.0
+            if other == 1:
+                return self
+        return operated(self, other)
 
     return times
-
-
-def _is(other: Any, number: int) -> bool:
-    return type(other) in (float, int) and bool(other == number)
 
 
 class Laned:
@@ -399,3 +418,6 @@ class Laned:
         if len(values) and (values == values[0]).all():
             return float(values[0])
         raise TypeError("one number of several")
+
+
+_NUMBER = (Laned, int, float, complex, np.number)

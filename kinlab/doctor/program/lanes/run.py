@@ -69,6 +69,7 @@ class InLanes:
         ]
         data = [one for one in self.woven.data if one[0] in self.placed]
         data.sort(key=lambda one: _depth(one[1].now))  # a row is made anew with what is in it
+        self._alone = {number: (number,) for number, _change in data}
         self._wide, self._data = _of_objects(trial, data)
         self.work = self._left = 0
 
@@ -218,11 +219,10 @@ class InLanes:
             for number, change in self._data
         ]
 
-    @staticmethod
-    def _put(lanes: Lanes, number: int, change: FieldChange) -> None:
+    def _put(self, lanes: Lanes, number: int, change: FieldChange) -> None:
         """One number of the data that an edit changes."""
         before = change.now
-        change.put(lanes.pick((number,), lambda: before, lambda _number: change.new))
+        change.put(lanes.pick(self._alone[number], lambda: before, lambda _number: change.new))
 
 
 def _of_objects(

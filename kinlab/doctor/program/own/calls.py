@@ -12,6 +12,7 @@ import numpy as np
 
 _LARGEST = 100_000
 """Numbers that an array, or an outer product, may have."""
+_OBJECT = np.dtype(object)
 _LONGEST = 5_000
 """Turns that a loop over numbers may have."""
 
@@ -55,9 +56,10 @@ def product(one: Any, other: Any, *rest: Any, **options: Any) -> Any:
     Where two of these cannot be multiplied, as a number and None, ``@`` gives one object back to
     the memory twice, and the process may end much later.
     """
-    kinds = getattr(one, "dtype", None), getattr(other, "dtype", None)
-    if object not in kinds or rest or options:
-        return np.matmul(one, other, *rest, **options) if rest or options else one @ other
+    if rest or options:
+        return np.matmul(one, other, *rest, **options)
+    if getattr(one, "dtype", None) is not _OBJECT and getattr(other, "dtype", None) is not _OBJECT:
+        return one @ other
     one, other = np.asarray(one), np.asarray(other)
     if not one.ndim or not other.ndim:
         raise ValueError("a product of matrices with a number")

@@ -135,16 +135,19 @@ def bounded(tree: ast.FunctionDef, function: FunctionType | None) -> ast.Functio
 def with_products(tree: ast.AST) -> Iterator[None]:
     """A tree with functions for ``@`` and ``@=``, as it is compiled."""
     spots: list[tuple[Any, Any]] = []
-    every = [tree]
+    every: list[Any] = [tree]
     for node in every:
+        inside = node.__dict__
         for name in node._fields:
-            value: Any = getattr(node, name, None)
-            holder: Any = value if isinstance(value, list) else vars(node)
-            for key, one in enumerate(value) if isinstance(value, list) else [(name, value)]:
-                if isinstance(one, ast.AST):
-                    every.append(one)
-                    if isinstance(getattr(one, "op", None), ast.MatMult):
-                        spots.append((holder, key))
+            value = inside.get(name)
+            if type(value) is list:
+                every += (some := [one for one in value if isinstance(one, ast.AST)])
+                if any(type(getattr(one, "op", None)) is ast.MatMult for one in some):
+                    spots += [(value, k) for k, one in enumerate(value) if _is_product(one)]
+            elif isinstance(value, ast.AST) and value._fields:
+                every.append(value)
+                if _is_product(value):
+                    spots.append((inside, name))
     kept = [holder[key] for holder, key in spots]
     try:
         for holder, key in reversed(spots):
@@ -154,6 +157,10 @@ def with_products(tree: ast.AST) -> Iterator[None]:
     finally:
         for (holder, key), one in zip(spots, kept, strict=True):
             holder[key] = one
+
+
+def _is_product(node: Any) -> bool:
+    return type(getattr(node, "op", None)) is ast.MatMult
 
 
 def _called(node: Any) -> Any:
