@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 from itertools import combinations
+from typing import Any
 
 from kinlab.doctor.bytecode.syntax import called, copied, names, nodes
 from kinlab.doctor.program.edits.scope.forms import Turned
@@ -109,6 +110,8 @@ def of_row(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit
     entries = [one for one in here.node.elts if not isinstance(one, ast.Constant)]
     if len(entries) < 2:
         return
+    for moved in _of_other_places(entries, observed):
+        yield here.within(here.node, "elts", moved, "index", 1.06)
     used = [
         {ast.unparse(x): x for x in nodes(one) if isinstance(x, _PIECES) and _is_piece(x)}
         for one in entries
@@ -128,6 +131,18 @@ def of_row(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit
             if like:
                 put = [_Renamed({text: new}).of(one) for one in here.node.elts]
                 yield here.within(here.node, "elts", put, "name", cost)
+
+
+def _of_other_places(entries: list[ast.expr], observed: Observed) -> Iterator[list[ast.expr]]:
+    """The entries at another place of each: ``n[2], o[2], a[2]`` for ``n[0], o[0], a[0]``."""
+    given = [one for one in entries if isinstance(one, ast.Subscript)]
+    at: set[Any] = {getattr(one.slice, "value", None) for one in given}
+    sizes = [shape[0] for one in given if (shape := observed.shape(one.value))]
+    if len(sizes) < len(entries) or len(at) > 1 or not all(type(k) is int for k in at):
+        return
+    for k in range(min(sizes)):
+        if k not in at:
+            yield [ast.Subscript(one.value, number(k), ast.Load()) for one in given]
 
 
 _PIECES = ast.Name | ast.Subscript | ast.Attribute

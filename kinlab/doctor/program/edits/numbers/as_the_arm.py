@@ -32,6 +32,8 @@ _TOGETHER = 0.01
 """What several numbers of a row cost more than one, which may do alone."""
 _END, _DECIMALS = 1.0, 15
 """Cost of the arm's base or tool for the identity; decimals that its numbers have."""
+_DECIMALS_OF_DEGREES = 9
+"""Decimals that angles in degrees are typed with at most."""
 _PARTS = 12
 """Into how many parts of pi a number may fall."""
 
@@ -53,8 +55,9 @@ def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
     for name, found in columns.items():
         rows = sorted(found)  # of a column with None for what turns or slides, those that are told
         if rows and rows[-1] < table.n and len(rows) >= max(_TOLD, table.n - _MOVING):
-            told = [column[rows] for column in _columns(table)]
-            for at, right in dict.fromkeys(_wrong([found[i].value for i in rows], told)):
+            values = [found[i].value for i in rows]
+            told = [column[rows] for column in _columns(table, values)]
+            for at, right in dict.fromkeys(_wrong(values, told)):
                 k = rows[at]
                 off.setdefault((name[0], k), {}).setdefault(name, []).append((found[k], right))
     for (whose, k), cells in off.items():
@@ -99,7 +102,7 @@ def as_it_is(trial: Trial, observed: Observed, robot: Any) -> Callable[[ProgramE
     for name, found in _columns_of(trial, observed).items():
         values = [found[i].value for i in sorted(found)]
         told = len(values) == table.n and len({*map(abs, values)}) > 1
-        if told and any(all(map(_same, column, values)) for column in _columns(table)):
+        if told and any(all(map(_same, column, values)) for column in _columns(table, values)):
             same.add(name)
             same |= {id(cell.node) for cell in found.values() if cell.node is not None}
 
@@ -122,7 +125,7 @@ def columns_as_meant(
         if table is None or len(cells) != table.n:
             continue
         values = [cell.value for cell in cells]
-        for right in _columns(table):
+        for right in _columns(table, values):
             pairs = zip(values, right.tolist(), strict=True)
             if all(value == exact or alike(value, exact) for value, exact in pairs):
                 found |= zip((cell.key for cell in cells), right.tolist(), strict=True)
@@ -323,10 +326,16 @@ def _wrong(values: Sequence[float], columns: Sequence[Array]) -> Iterator[tuple[
                     yield int(k), float(column[k])
 
 
-def _columns(table: DHTable) -> list[Array]:
-    """The columns of a table: its lengths, angles, masses, centres and moments of inertia."""
+def _columns(table: DHTable, typed: Sequence[float]) -> list[Array]:
+    """The columns of a table: its lengths, angles, masses, centres and moments of inertia.
+
+    Its angles in degrees, too, where one of those that are typed is no angle otherwise.
+    """
     links = table.links
     plain = [[getattr(k, name) for k in links] for name in ("a", "alpha", "d", "theta", "mass")]
+    if max(map(abs, typed), default=0.0) > 2 * np.pi:
+        degrees = np.round(np.degrees(plain[1:4:2]), _DECIMALS_OF_DEGREES)
+        plain += degrees.tolist()
     centres = np.array([k.com for k in links], dtype=float).T
     tensors = np.array([k.inertia for k in links], dtype=float)
     moments = [tensors[:, i, j] for i, j in combinations_with_replacement(range(3), 2)]

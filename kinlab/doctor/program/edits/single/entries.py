@@ -57,9 +57,10 @@ def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
                     cost = _PICKED - _LESS * near
                     yield here.within(key.elts, n, number(other), "index", cost)
         if whole_constant(key):
+            alike = _places_beside(here, observed) if len(keys) == 1 else set()
             for other in range(-1, max(size, 4 if not size else 0)):
                 if other != value_of(key) and not (other == -1 and size):
-                    near = abs(other - value_of(key)) == 1
+                    near = other in alike or abs(other - value_of(key)) == 1
                     yield here.within(holder, field, number(other), "index", 1.05 if near else 1.1)
             for name in scope.counters:
                 cost = _BESIDE if name in beside else 1.13
@@ -91,6 +92,17 @@ def _keys_beside(here: Here) -> dict[str, ast.expr]:
     rows = [one for one in line if isinstance(one, ast.Subscript) and not _is_stacked(one)]
     keys = [key for one in rows for _holder, _field, key in keys_of(one)]
     return {ast.unparse(one): one for one in keys if isinstance(one, ast.Name) or shifted(one)}
+
+
+def _places_beside(here: Here, observed: Observed) -> set[int]:
+    """The places of which other rows of the same length are asked in the same line."""
+    line, own = nodes(statement_of(here.above)), observed.shape(here.node.value)
+    rows = [one for one in line if isinstance(one, ast.Subscript) and one is not here.node]
+    return {
+        value_of(one.slice)
+        for one in rows
+        if whole_constant(one.slice) and own is not None and observed.shape(one.value) == own
+    }
 
 
 def _is_stacked(node: ast.Subscript) -> bool:
