@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import reduce
-from itertools import combinations
+from itertools import combinations, permutations
 
 from kinlab.doctor.bytecode.syntax import called, copied, factors, names, nodes
 from kinlab.doctor.program.edits.additions import OtherAxis, summed
-from kinlab.doctor.program.edits.scope.forms import Turned
+from kinlab.doctor.program.edits.scope.forms import Turned, summands
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.entries import keys_of
 from kinlab.doctor.program.edits.single.whole import whole_constant
@@ -27,6 +27,8 @@ _DIAGONAL = 1.06
 """What it is to forget what is used nowhere on a diagonal."""
 _FEW = 8
 """Names of one kind that are tried."""
+_BOTH, _INDICES = 2, 3
+"""Terms of Christoffel's symbol that are there, where the third is lost; their indices."""
 _SUMS = ast.Add | ast.Sub
 _SET = ast.Assign | ast.AugAssign | ast.Return
 
@@ -38,6 +40,8 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
         return
     op = parent.op if isinstance(parent, ast.BinOp) else None
     if shape == ():
+        if isinstance(node, ast.BinOp) and not isinstance(op, _SUMS):
+            yield from _with_indices_exchanged(here, scope)
         if isinstance(parent, ast.List | ast.Tuple) or _is_entry(parent):
             yield here.instead(number(0.0), "extra term", 1.18)
         if isinstance(op, _SUMS):
@@ -74,6 +78,10 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
         yield from _with_angles(here, scope)
     if len(shape) == 1 and scope.has_numpy and isinstance(parent, ast.BinOp):
         yield from _as_a_diagonal(here, scope, shape)
+    if len(shape) == 1 and isinstance(parent, _SET):
+        yield from _of_idle_numbers_along(here, scope, shape)
+    if len(shape) == 1 and isinstance(op, ast.Mult) and isinstance(node, ast.Name | ast.Subscript):
+        yield from _beside_in_a_product(here, scope, shape)
     if shape == _VECTOR and isinstance(op, ast.Add):
         yield from _turned_beside(here)
     if scope.has_numpy and len(shape) == 1 and isinstance(node, ast.Name | ast.Subscript):
@@ -212,6 +220,35 @@ def _of_another_row(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
                     yield here.instead(ast.IfExp(test, one, node), "condition", 1.12)
 
 
+def _with_indices_exchanged(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """A term whose indices are those of the others in another order: Christoffel's third."""
+    terms = [*summands(here.node)]
+    known = {ast.unparse(one) for one in terms}
+    own = [name for name in dict.fromkeys(names(terms[0])) if name in scope.counting]
+    alike = all(sorted(_counted(x, own)) == sorted(own) for x in terms)
+    if len(terms) != _BOTH or len(own) != _INDICES or not alike:
+        return
+    for order in permutations(own):
+        new = _Exchanged(dict(zip(own, order, strict=True))).visit(copied(terms[0]))
+        if ast.unparse(new) not in known:
+            for op, cost in ((ast.Sub(), 1.04), (ast.Add(), 1.06)):
+                yield here.instead(ast.BinOp(here.node, op, new), "missing term", cost)
+
+
+def _counted(term: ast.expr, counters: Sequence[str]) -> list[str]:
+    return [name for name in names(term) if name in counters]
+
+
+class _Exchanged(ast.NodeTransformer):
+    """Names for one another."""
+
+    def __init__(self, others: dict[str, str]) -> None:
+        self.others = others
+
+    def visit_Name(self, node: ast.Name) -> ast.Name:
+        return ast.Name(self.others.get(node.id, node.id), node.ctx)
+
+
 def _of_the_point(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """A coordinate of the frame's origin for that of a point: ``(p + c)[2]``."""
     node = here.node
@@ -240,6 +277,31 @@ def _of_idle_numbers(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
         for other in [x for x in every if x not in idle][: 2 * _FEW]:
             term = ast.BinOp(one, ast.Mult(), other)
             yield here.instead(ast.BinOp(here.node, ast.Add(), term), "missing term", 1.12)
+
+
+def _of_idle_numbers_along(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
+    """The same along a vector, alone or times another number: ``Q + I*alpha*J``."""
+    every = [x for _text, x in scope.simple(()) if not whole_constant(getattr(x, "slice", x))]
+    idle = [x for x in every if scope.is_idle(x)][: _FEW // 4]
+    vectors = [x for _text, x in scope.simple(shape)][: 2 * _FEW] if idle else []
+    for one in idle:
+        for vector in vectors:
+            term = ast.BinOp(one, ast.Mult(), vector)
+            yield here.instead(ast.BinOp(here.node, ast.Add(), term), "missing term", 1.1)
+            for other in [x for x in every if x not in idle][: 2 * _FEW]:
+                both = ast.BinOp(one, ast.Mult(), other)
+                term = ast.BinOp(both, ast.Mult(), vector)
+                yield here.instead(ast.BinOp(here.node, ast.Add(), term), "missing term", 1.14)
+
+
+def _beside_in_a_product(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
+    """A vector less another one, or with it, in a product: ``m*(a - g)`` for ``m*a``."""
+    own = ast.unparse(here.node)
+    for text, other in scope.simple(shape):
+        if text != own:
+            for op, cost in ((ast.Sub(), 1.06), (ast.Add(), 1.08)):
+                new = ast.BinOp(here.node, op, other)
+                yield here.instead(new, "missing term", cost + scope.dear(other))
 
 
 def _as_a_diagonal(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:

@@ -314,7 +314,8 @@ class LineSearch:
             for one in ahead
             if abs(one.cost - first.cost) <= _SAME and self.likely(one.edits[-1]) <= least
         ]
-        first = replace(first, rivals=tuple(same[1:2]))
+        rivals = [one for one in same[1:2] if not _add_the_same(first.edits[-1], one.edits[-1])]
+        first = replace(first, rivals=tuple(rivals))
         return [first, *(one for one in found if one.edits != first.edits)]
 
     def of_any_arm(self, found: list[ProgramRepair]) -> list[ProgramRepair]:
@@ -392,6 +393,13 @@ class LineSearch:
         if self.arms.only_here(several):
             return None
         return ProgramRepair(several, error, sum(edit.cost for edit in several))
+
+
+def _add_the_same(one: ProgramEdit, other: ProgramEdit) -> bool:
+    """Whether two edits add one term, in two lines of one sum."""
+    put = [edit.changes[0].new for edit in (one, other) if edit.kind == "missing term"]
+    terms = [ast.dump(new.right) for new in put if isinstance(new, ast.BinOp)]
+    return len(terms) > 1 and terms[0] == terms[1]
 
 
 def _calls(edit: ProgramEdit, functions: set[str]) -> bool:

@@ -47,6 +47,7 @@ def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
     if table is None:
         return
     yield from _ends(trial, table)
+    yield from _base_set(trial, observed, table)
     for cell, right in _named(trial, observed, table):
         if not _same(cell.value, right):
             yield cell.edit(right)
@@ -80,6 +81,23 @@ def _ends(trial: Trial, table: DHTable) -> Iterator[ProgramEdit]:
                     told = (_matrix(one), _matrix(end))
                     change = FieldChange(trial.space, name, end)
                     yield ProgramEdit(DATA, (change,), "number", _END, name, exchanged=told)
+
+
+def _base_set(trial: Trial, observed: Observed, table: DHTable) -> Iterator[ProgramEdit]:
+    """The arm's base for the identity that a statement begins with."""
+    base = np.round(np.asarray(table.base, dtype=float), _DECIMALS) + 0.0
+    if np.array_equal(base, np.eye(4)):
+        return
+    new = ast.parse(f"np.diag({np.diagonal(base).tolist()})", mode="eval").body
+    if not np.array_equal(base, np.diag(np.diagonal(base))):
+        new = ast.parse(f"np.array({base.tolist()})", mode="eval").body
+    for part, tree in enumerate(trial.trees):
+        for line in (node for node in nodes(tree) if isinstance(node, ast.Assign)):
+            seen = observed.of(line.value) if isinstance(line.value, ast.Call) else None
+            values = seen.values if seen is not None and seen.shape == (4, 4) else ()
+            if values and all(np.array_equal(value, np.eye(4)) for value in values):
+                change = FieldChange(line, "value", new)
+                yield ProgramEdit(part, (change,), "number", _END, line.value)
 
 
 def _matrix(value: Array) -> str:

@@ -23,6 +23,15 @@ def while_counters(tree: ast.FunctionDef, observed: Observed) -> Iterator[str]:
                     yield target.id
 
 
+def things(tree: ast.AST) -> set[str]:
+    """The names of what is asked for members or keys: ``link.m``, ``link["m"]``."""
+    every = nodes(tree)
+    owners = [one.value for one in every if isinstance(one, ast.Attribute)]
+    entries = [one for one in every if isinstance(one, ast.Subscript)]
+    owners += [one.value for one in entries if isinstance(getattr(one.slice, "value", 0), str)]
+    return {one.id for one in owners if isinstance(one, ast.Name)}
+
+
 def counts(tree: ast.FunctionDef, observed: Observed, known: list[str]) -> list[str]:
     """Names of whole numbers that a part is given, and that are no counters of its own."""
     given = {one.arg for one in tree.args.args}

@@ -18,8 +18,8 @@ from kinlab.doctor.program.trial import Trial
 
 _LONG = 60
 """Letters up to which an expression is tried in other places."""
-_FEW_NUMBERS = 6
-"""Names of a module's numbers up to which a part may have forgotten any of them."""
+_FEW_NUMBERS, _FEW_ROWS = 6, 4
+"""Names of a module's numbers, and of its rows, up to which a part may have forgotten any."""
 
 
 class Knowledge:
@@ -111,12 +111,15 @@ class Knowledge:
         """What its loops set and count; gives the names that only comprehensions set."""
         self.counters: list[str] = []
         inner, outer = set[str](), set[str]()
+        things, self._run_over = counters.things(tree), list[str]()
         for node in nodes(tree):
             if isinstance(node, ast.For | ast.comprehension):
                 set_here = names(node.target)
                 passed = of_names.of_loop(node, trial, self.observed)
                 self.shapes |= {n: s for n, s in passed.items() if n not in self.shapes}
-                self.counters += [n for n in set_here if n not in (*self.counters, *passed)]
+                known = (*self.counters, *passed, *things)
+                self.counters += [name for name in set_here if name not in known]
+                self._run_over += [name for name in set_here if name in things]
                 (inner if isinstance(node, ast.comprehension) else outer).update(set_here)
         self._counted = frozenset(counters.while_counters(tree, self.observed))
         self.counters += [name for name in sorted(self._counted) if name not in self.counters]
@@ -186,7 +189,7 @@ class Knowledge:
 
     def _count(self, trial: Trial, tree: ast.FunctionDef) -> None:
         """What is asked of its counters; those that are numbers."""
-        self.tests = counters.tests(tree, trial, self.counters)
+        self.tests = counters.tests(tree, trial, [*self.counters, *self._run_over])
         self.counters = [name for name in self.counters if self.shapes.get(name, ()) == ()]
         self.whole = [*self.counters, *counters.counts(tree, self.observed, self.counters)]
 
@@ -219,6 +222,7 @@ class Knowledge:
     def _put_names(self, trial: Trial) -> None:
         """Names that nothing uses and those that it may have forgotten, and their entries."""
         data = trial.program.data
+        rows = [name for name in data if len(self.shapes.get(name, ())) == 1]
         for name, shape in self.shapes.items():
             if name in self.counters:
                 continue
@@ -228,6 +232,8 @@ class Knowledge:
             forgotten = name in data and name not in self.present
             if forgotten and not shape and len(data) <= _FEW_NUMBERS:
                 self._put((), plain)
+            if forgotten and len(shape) == 1 and len(rows) <= _FEW_ROWS:
+                self._put(shape, plain)
             if shape and (unused or len(shape) > 1 or forgotten):
                 self.lists.setdefault(name, shape[1:])
             if unused and len(shape) == 1 and shape[0] <= idle.JOINTS:

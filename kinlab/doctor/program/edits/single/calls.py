@@ -20,6 +20,8 @@ _ARGUMENTS, _APART = 4, 0.03
 """The same of arguments; what it costs more of those that do not stand side by side."""
 _ARCS = ("arcsin", "asin", "arccos", "acos")
 """Functions that do not tell the quadrant."""
+_QUADRANT = 0.99
+"""Cost of the angle of two sides for that of their quotient."""
 _FAMILIES = (
     ("zeros", "ones"),
     ("array", "asarray", "cumsum"),
@@ -77,6 +79,8 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
         wholes = [getattr(one, "value", one) for one in node.args]
         yield here.within(node, "args", wholes, "loop", 1.08)
     yield from _other_function(here, name)
+    if name in ("arctan", "atan") and len(node.args) == 1:
+        yield from _of_both_sides(here, scope, name)
     if name in _ARCS and len(node.args) == 1:
         yield from _of_two(here, scope, name)
     if isinstance(node.func, ast.Attribute) and name in ("append", "insert") and node.args:
@@ -117,14 +121,26 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
             yield here.instead(product, "inverse", 1.25)
 
 
+def _whole_arc(node: ast.Call, scope: Scope, name: str) -> ast.expr | None:
+    """What tells the quadrant, as the program may call it; None where it cannot."""
+    whole = "arctan2" if name.startswith("arc") else "atan2"
+    if isinstance(node.func, ast.Attribute):
+        return ast.Attribute(node.func.value, whole, ast.Load())
+    return ast.Name(whole, ast.Load()) if callable(scope.space.get(whole)) else None
+
+
+def _of_both_sides(here: Here, scope: Scope, name: str) -> Iterator[ProgramEdit]:
+    """The angle in its quadrant: ``arctan2(y, x)`` for ``arctan(y/x)``."""
+    own, share = _whole_arc(here.node, scope, name), here.node.args[0]
+    if own is not None and isinstance(share, ast.BinOp) and isinstance(share.op, ast.Div):
+        new = ast.Call(own, [share.left, share.right], [])
+        yield here.instead(new, "function", _QUADRANT)
+
+
 def _of_two(here: Here, scope: Scope, name: str) -> Iterator[ProgramEdit]:
     """The angle of both sine and cosine: ``atan2(s3, c3)`` for ``asin(s3)``."""
-    node, whole = here.node, "arctan2" if name.startswith("arc") else "atan2"
-    if isinstance(node.func, ast.Attribute):
-        own: ast.expr = ast.Attribute(node.func.value, whole, ast.Load())
-    elif callable(scope.space.get(whole)):
-        own = ast.Name(whole, ast.Load())
-    else:
+    node, own = here.node, _whole_arc(here.node, scope, name)
+    if own is None:
         return
     for text, other in scope.simple(()):
         if text != ast.unparse(node.args[0]):
