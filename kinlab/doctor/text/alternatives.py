@@ -35,7 +35,9 @@ from kinlab.host.language import N_
 _FACTORS = {"2": 2.0, "3": 3.0, "4": 4.0, "/2": 0.5, "/3": 1 / 3, "/4": 0.25, "pi": math.pi}
 _LENGTHS = ({"l", "lc"}, {"L", "lc"}, {"a", "lc"}, {"L", "Lc"}, {"l", "r"})
 """A link's length, and how far its centre of mass is: the one is taken for the other."""
-_CENTRES = {"lc", "Lc", "r"}
+_CENTRES = {"lc", "Lc", "r", "lg"}
+_LARGE, _DOUBLED = 10, 1.05
+"""Whole numbers that are rather typed double, or half, than that a 2 is lost in front."""
 """Letters of the distances of centres."""
 _OF_LINKS = set().union(*_LENGTHS)
 _MOTION = re.compile(r"(qdd|qd|q)(\d+)")
@@ -189,6 +191,12 @@ def _number(line: Line, place: Place) -> None:
         if size != float(line.segment(place)) and not (size == 1.0 and idle):
             cost = 1.25 + _REDUCED * _may_be_reduced(place, size)
             line.instead(place, shown, np.full(line.count, size), "factor", cost)
+    typed = float(line.segment(place))
+    for factor in (2, 0.5) if typed.is_integer() and typed >= _LARGE else ():
+        if (factor * typed).is_integer():  # 60 for 30
+            shown = f"{factor * typed:.0f}"
+            value = np.full(line.count, factor * typed)
+            line.instead(place, shown, value, "factor", _DOUBLED)
     if not decimal and not line.only_numbers:
         return
     for word, value in line.atoms.items():  # a length's number, mistaken: 0.41 for l2 = 0.4
