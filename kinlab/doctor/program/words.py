@@ -487,13 +487,13 @@ def _is_signed_twice(node: ast.AST) -> bool:
 
 
 def _in_front(node: ast.AST) -> bool:
-    """Whether it is a number times a product in parentheses, or a minus in front of one."""
+    """Whether it is something times a product in parentheses, or a minus in front of one."""
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
         parts = factors(node.operand)
         return len(parts) > 1 and not isinstance(parts[0], ast.Constant | ast.UnaryOp)
     if not isinstance(node, ast.BinOp) or not isinstance(node.op, ast.Mult):
         return False
-    return isinstance(node.left, ast.Constant) and len(factors(node.right)) > 1
+    return len(factors(node.right)) > 1
 
 
 def _product(*parts: ast.expr) -> ast.expr:

@@ -42,6 +42,8 @@ _OF_AN_ANGLE = 0.1
 """What a factor costs more that is an angle: of these sines and cosines are factors."""
 _MIXED = 0.96
 """Cost of a lost 2 in the mixed term of a square: a length for a distance is as soon mistaken."""
+_MIXED_SQUARE = 1.07
+"""Cost of a product of two rates for a square, or of a square for it."""
 _BESIDE_A_PART = 1.08
 """What it is to forget all of one beside a part of another: ``m2/2 + m3``."""
 _AS_GIVEN = 0.02
@@ -294,6 +296,7 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
     beside = _factors_beside(here) if term else set()
     if isinstance(node, ENTRIES) and not power and (operated or term):
         yield here.instead(ast.BinOp(node, ast.Pow(), number(2)), "power", 1.08)
+    yield from _squares_and_products(here, scope)
     if term:
         yield from _two_factors(here, scope)
     if operated:
@@ -321,6 +324,29 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
             for op, cost in ((ast.Add(), 1.0), (ast.Sub(), 1.05)):
                 new = ast.BinOp(node, op, scalar)
                 yield here.instead(new, "missing term", cost + dear)
+
+
+def _squares_and_products(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """``qd1*qd2`` for ``qd1**2``, and a square for the product of two that follow on another."""
+    node = here.node
+    if not isinstance(node, ast.BinOp):
+        return
+    if isinstance(node.op, ast.Pow) and getattr(node.right, "value", 0) == 2:
+        for _text, other in scope.simple(()):
+            if follow(other, node.left):
+                first, last = sorted((other, node.left), key=ast.unparse)
+                yield here.instead(ast.BinOp(first, ast.Mult(), last), "index", _MIXED_SQUARE)
+    if isinstance(node.op, ast.Mult) and isinstance(node.right, ENTRIES):
+        front = node.left.right if isinstance(node.left, ast.BinOp) else node.left
+        if not follow(front, node.right):
+            return
+        for one in (front, node.right):
+            new = squared = ast.BinOp(one, ast.Pow(), number(2))
+            if front is not node.left and isinstance(node.left, ast.BinOp):
+                if not isinstance(node.left.op, ast.Mult):
+                    return
+                new = ast.BinOp(node.left.left, node.left.op, squared)
+            yield here.instead(new, "index", _MIXED_SQUARE)
 
 
 def _masses_behind(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

@@ -16,7 +16,7 @@ from kinlab.doctor.bytecode.syntax import called, nodes
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.numbers.data import NumberPlace, leaves, together
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import DATA, ProgramEdit, number
+from kinlab.doctor.program.places import DATA, ProgramEdit, number, places
 from kinlab.doctor.program.trial import FieldChange, Trial
 from kinlab.model.dh import DHTable
 from kinlab.symbolic.vocabulary import vocabulary
@@ -91,6 +91,13 @@ def _base_set(trial: Trial, observed: Observed, table: DHTable) -> Iterator[Prog
     new = ast.parse(f"np.diag({np.diagonal(base).tolist()})", mode="eval").body
     if not np.array_equal(base, np.diag(np.diagonal(base))):
         new = ast.parse(f"np.array({base.tolist()})", mode="eval").body
+    if np.array_equal(base @ base, np.eye(4)):  # its inverse, and it stays as it is typed
+        for here in places(0, trial.trees[0]):
+            given = [one.arg for one in trial.trees[0].args.args]
+            named = isinstance(here.node, ast.Name) and here.node.id in given
+            if named and observed.shape(here.node) == (4, 4):
+                product = ast.BinOp(new, ast.MatMult(), here.node)
+                yield here.instead(product, "missing matrix", _END)
     for part, tree in enumerate(trial.trees):
         for line in (node for node in nodes(tree) if isinstance(node, ast.Assign)):
             seen = observed.of(line.value) if isinstance(line.value, ast.Call) else None
