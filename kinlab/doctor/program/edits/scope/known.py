@@ -32,6 +32,7 @@ class Knowledge:
         has_numpy: whether numpy is called ``np``.
         shapes: names of numbers, by their shapes.
         lists: names of lists, by the shapes of their entries.
+        levels: names of numbers that stay the same, with these.
         attributes: of objects, by their shapes.
         keys: of dictionaries, by the shapes of what is there.
         idle_keys: of these, those that the program never asks for.
@@ -70,6 +71,7 @@ class Knowledge:
         self.taken: Counter[str] = Counter()
         self.pieces: pieces.Pieces = {}
         self.idle: list[pieces.Sized] = []
+        self.levels: dict[str, float] = {}
         self._ask_for_functions(trial, tree)
         self._take_sums_apart(tree)
         gathered = self._enter_loops(trial, tree)
@@ -149,6 +151,8 @@ class Knowledge:
             return
         if isinstance(node, ast.Name):
             self.shapes.setdefault(node.id, seen.shape)
+            if seen.shape == () and len({*map(float, seen.values)}) == 1:
+                self.levels[node.id] = float(seen.values[0])
             if seen.whole and seen.shape == () and {*map(float, seen.values)} != {-1.0, 1.0}:
                 return  # it counts, and is no sign
         text = ast.unparse(node)

@@ -35,9 +35,11 @@ class Scope(Knowledge):
     def are_halves(self, one: str, other: str) -> bool:
         """Whether one of two numbers of one link is half of the other: ``lc1`` of ``l1``."""
         digits = {name[len(name.rstrip("0123456789")) :] for name in (one, other)}
-        values = [self.space.get(name) for name in (one, other)]
+        values = [self.levels.get(name, self.space.get(name)) for name in (one, other)]
         if len(digits) > 1 or not all(isinstance(x, float | list | np.ndarray) for x in values):
             return False
+        if type(values[0]) is type(values[1]) is float:
+            return 0.0 != values[0] in (2 * values[1], values[1] / 2)
         try:
             first, last = (np.asarray(x, dtype=float) for x in values)
         except (TypeError, ValueError):
