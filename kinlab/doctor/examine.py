@@ -224,6 +224,8 @@ def _possible(
     edited = _exactly(program.causes, worst) if program else []
     rough: list[Cause] = []
     ways: Ready = []
+    if program and silent and not edited:  # two slips may leave no number
+        edited = [c for more in looking for c in _exactly(more.causes, worst)]
     if program and edited and (silent or program.written_out or len(edited[0].kinds) > 1):
         return edited[:1], (), None, None  # with nothing more to be said of what that means
     if not visible:

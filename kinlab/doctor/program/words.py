@@ -19,6 +19,7 @@ from kinlab.doctor.bytecode.syntax import called, factors, nodes
 from kinlab.doctor.changes import Case, table_of
 from kinlab.doctor.program.cuts import cuts
 from kinlab.doctor.program.digits import of_rounded_numbers
+from kinlab.doctor.program.edits.chains import SUMS, chain, joined
 from kinlab.doctor.program.edits.numbers.as_the_arm import of_table
 from kinlab.doctor.program.grounds.scaled import is_own
 from kinlab.doctor.program.named import named
@@ -475,7 +476,14 @@ def _flat(new: str, old: str) -> str:
 
 
 def _is_odd(node: ast.AST) -> bool:
-    return _in_front(node) or _is_signed_twice(node)
+    return _in_front(node) or _is_signed_twice(node) or _is_sum_added(node)
+
+
+def _is_sum_added(node: ast.AST) -> bool:
+    """Whether a sum in parentheses is added: ``a + (b + c)``."""
+    added = isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add)
+    last = node.right if added and isinstance(node, ast.BinOp) else None
+    return isinstance(last, ast.BinOp) and isinstance(last.op, ast.Add | ast.Sub)
 
 
 def _is_signed_twice(node: ast.AST) -> bool:
@@ -521,6 +529,9 @@ class _Flat(ast.NodeTransformer):
 
     def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
         self.generic_visit(node)
+        if _is_sum_added(node):
+            first, terms = chain(node.right, SUMS)
+            return joined(node.left, [(ast.Add(), first), *terms])
         if _is_signed_twice(node):
             first, *rest = factors(node.right)
             assert isinstance(first, ast.UnaryOp)

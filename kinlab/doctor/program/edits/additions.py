@@ -44,6 +44,8 @@ _MIXED = 0.96
 """Cost of a lost 2 in the mixed term of a square: a length for a distance is as soon mistaken."""
 _MIXED_SQUARE = 1.07
 """Cost of a product of two rates for a square, or of a square for it."""
+_AS_THERE = 0.99
+"""Cost of a sum for one of its terms, where another link has that sum."""
 _BESIDE_A_PART = 1.08
 """What it is to forget all of one beside a part of another: ``m2/2 + m3``."""
 _AS_GIVEN = 0.02
@@ -318,9 +320,11 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
                 square = ast.BinOp(scalar, ast.Pow(), number(2))
                 new = ast.BinOp(node, ast.Mult(), square)
                 yield here.instead(new, "missing factor", 1.12 + dear)
-        elif named and operated and (text[0] == own[0] or not dear):
+        elif named and operated and (text[0] == own[0] or not dear or _of_one_link(text, own)):
             both = sorted((own, text))  # a sum that stands elsewhere, as it is written there
             dear = 0.0 if " + ".join(both) in scope.pieces_here(()) else dear
+            if _stems(text, own) in scope.sums:  # a2 + r2 beside a3 + r3
+                yield here.instead(ast.BinOp(scalar, ast.Add(), node), "missing term", _AS_THERE)
             for op, cost in ((ast.Add(), 1.0), (ast.Sub(), 1.05)):
                 new = ast.BinOp(node, op, scalar)
                 yield here.instead(new, "missing term", cost + dear)
@@ -347,6 +351,19 @@ def _squares_and_products(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
                     return
                 new = ast.BinOp(node.left.left, node.left.op, squared)
             yield here.instead(new, "index", _MIXED_SQUARE)
+
+
+def _of_one_link(one: str, other: str) -> bool:
+    """Whether two names have one number, as a2 and r2."""
+    digits = [text[len(text.rstrip("0123456789")) :] for text in (one, other)]
+    return digits[0] == digits[1] != "" and one[0] in "aldr" and other[0] in "aldrcx"
+
+
+def _stems(one: str, other: str) -> tuple[str, str]:
+    """The letters of two names with one number; of others nothing."""
+    letters = (one.rstrip("0123456789"), other.rstrip("0123456789"))
+    same = one[len(letters[0]) :] == other[len(letters[1]) :] != ""
+    return letters if same else ("", "")
 
 
 def _masses_behind(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

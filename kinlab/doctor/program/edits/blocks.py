@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Container, Iterator
+from itertools import product
 
 from kinlab.doctor.bytecode.syntax import called, copied, names, nodes
 from kinlab.doctor.program.edits.additions import OtherAxis, OtherName
 from kinlab.doctor.program.edits.scope.forms import Turned
 from kinlab.doctor.program.edits.scope.part import Scope
-from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import ProgramEdit, paired, reads, root, written_into
 from kinlab.doctor.program.trial import FieldChange
 
@@ -21,6 +22,10 @@ _NEVER = 1.02
 """Cost of a line that fills what is never filled."""
 _LONG, _NAMES = 100, 8
 """Characters of a line of which another is made."""
+_LEFT_OUT, _VECTORS = 1.1, ((2,), (3,))
+"""Cost of a step of a recursion that is left out; shapes of what it carries along."""
+_SHORT, _FEW = 30, 3
+"""Characters of a term, and rates, of which one is tried."""
 _PLAIN = (ast.Assign, ast.AugAssign, ast.Expr)
 
 
@@ -42,6 +47,7 @@ def of_blocks(
                 yield from _of_unused(part, tree, node, name, block, scope)
         if isinstance(node, ast.For | ast.While):
             yield from _updates(part, tree, node, scope, observed)
+            yield from _steps_left_out(part, tree, node, scope)
         if isinstance(node, ast.If) and node.orelse:
             yield from _of_the_other_case(part, node, scope)
             yield from _in_both_cases(part, node)
@@ -187,6 +193,47 @@ def _updates(
                 line = ast.Assign([ast.Name(name, ast.Store())], new)
                 block = [*loop.body]
                 yield _missing(part, loop, "body", block, len(block), line, 1.05 if fresh else 1.18)
+
+
+def _steps_left_out(
+    part: int, tree: ast.FunctionDef, loop: ast.For | ast.While, scope: Scope
+) -> Iterator[ProgramEdit]:
+    """What a recursion adds to a vector at each turn: ``v = v + cross(w, r)``, ``v += qd[i]*z``."""
+    inside = {id(one) for one in nodes(loop)}
+    outside = [x for x in nodes(tree) if isinstance(x, ast.Assign) and id(x) not in inside]
+    carried = {name for one in outside for name in _sets(one)} & _uses(loop)
+    scope.stand([one for one in nodes(tree) if loop in nodes(one)])
+    blocks: list[tuple[ast.stmt, str, list[ast.stmt]]] = [(loop, "body", loop.body)]
+    for case in (one for one in loop.body if isinstance(one, ast.If)):
+        blocks += [(case, "body", case.body), (case, "orelse", case.orelse)]
+    for name in sorted(carried):
+        shape = scope.shapes.get(name)
+        if shape not in _VECTORS:
+            continue
+        for piece in _terms_of_steps(name, shape, scope):
+            given = {*names(piece)}
+            for node, field, block in blocks:
+                last = [k for k, one in enumerate(block) if given & _sets(one)]
+                at = last[-1] + 1 if last else len(block) if node is not loop else 0
+                if block and at:
+                    term = ast.BinOp(ast.Name(name, ast.Load()), ast.Add(), copied(piece))
+                    line = ast.Assign([ast.Name(name, ast.Store())], term)
+                    yield _missing(part, node, field, block, at, line, _LEFT_OUT)
+
+
+def _terms_of_steps(name: str, shape: Shape, scope: Scope) -> Iterator[ast.expr]:
+    """What may be added: products with a vector that stand elsewhere, and a rate's with an arm."""
+    known = scope.pieces_here(shape)
+    for piece in known.values():
+        times = isinstance(piece, ast.BinOp) and isinstance(piece.op, ast.Mult)
+        if times and name not in names(piece) and len(ast.unparse(piece)) <= _SHORT:
+            yield piece
+    if scope.cross is not None and shape == _VECTORS[1]:
+        plain = [x for x in known.values() if isinstance(x, ast.Name)]
+        rates = [x for x in plain if x.id[:1] in "woWO" and x.id != name]
+        arms = [x for x in plain if x.id[:1] in "prcPlLdsC" and x.id != name]
+        for rate, arm in product(rates[:_FEW], arms[:_NAMES]):
+            yield ast.Call(scope.cross, [rate, arm], [])
 
 
 def _added(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Sequence
+from itertools import combinations
 
 SUMS = (ast.Add, ast.Sub)
 PRODUCTS = (ast.Mult, ast.Div, ast.MatMult)
@@ -41,6 +42,10 @@ def opposite(node: ast.expr) -> ast.expr:
     if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult | ast.Div):
         first, factors = chain(node, (ast.Mult, ast.Div))
         return joined(ast.UnaryOp(ast.USub(), first), factors)
+    if isinstance(node, ast.IfExp) and ast.unparse(node.orelse) == f"-{ast.unparse(node.body)}":
+        return ast.IfExp(node.test, node.orelse, node.body)
+    if isinstance(node, ast.IfExp) and ast.unparse(node.body) == f"-{ast.unparse(node.orelse)}":
+        return ast.IfExp(node.test, node.orelse, node.body)
     first, terms = chain(node, SUMS)
     taken = [term for op, term in terms if isinstance(op, ast.Sub)]
     if not taken or isinstance(first, ast.UnaryOp):
@@ -48,6 +53,17 @@ def opposite(node: ast.expr) -> ast.expr:
     added = [first, *(term for op, term in terms if isinstance(op, ast.Add))]
     more = [(ast.Add(), term) for term in taken[1:]]
     return joined(taken[0], [*more, *((ast.Sub(), term) for term in added)])
+
+
+def signs_exchanged(node: ast.BinOp) -> Iterator[ast.expr]:
+    """A sum with the signs of two of its terms for one another: ``a + b - c`` of ``a - b + c``."""
+    first, terms = chain(node, SUMS)
+    for i, j in combinations(range(len(terms)), 2):
+        (one, term), (other, last) = terms[i], terms[j]
+        if type(one) is not type(other):
+            new = [*terms]
+            new[i], new[j] = (other, term), (one, last)
+            yield joined(first, new)
 
 
 def times(number: ast.expr, node: ast.expr) -> ast.BinOp:

@@ -60,6 +60,8 @@ _SUMMED = 0.06
 """What a sign or factor costs more in a sum of names, each of which has a line of its own."""
 _ENTRIES = ast.Name | ast.Subscript | ast.Attribute
 """What a term more may be, of which one more is rather a factor 2."""
+_FILLED = 1.04
+"""Cost of another array that is filled, too."""
 _ROWS = 6
 """Rows of as many joints of which any may share out what is added to one entry."""
 
@@ -421,10 +423,21 @@ def _comparison_of(here: Here, test: ast.expr) -> Iterator[ProgramEdit]:
             yield here.within(test, "comparators", [plus(right, step)], "condition", 1.25)
 
 
+def _filled_beside(here: Here, target: ast.Subscript, observed: Observed) -> list[str]:
+    """Other arrays of one form that the part fills: Jv beside Jw."""
+    every = [one for one in nodes(here.above[0]) if isinstance(one, ast.Subscript)]
+    filled = [x.value for x in every if isinstance(x.ctx, ast.Store)]
+    own = observed.shape(target.value)
+    found = [x.id for x in filled if isinstance(x, ast.Name) and observed.shape(x) == own]
+    return [x for x in dict.fromkeys(found) if x != getattr(target.value, "id", x)]
+
+
 def _target(here: Here, target: ast.Subscript, observed: Observed) -> Iterator[ProgramEdit]:
     """Where the value is put."""
     yield from of_keys(here, target, 1.12)
     sizes = observed.shape(target.value) or ()
+    for name in _filled_beside(here, target, observed):
+        yield here.within(target, "value", ast.Name(name, ast.Load()), "name", _FILLED)
     for k, (holder, field, key) in enumerate(keys_of(target)):
         if whole_constant(key):
             for other in range(sizes[k] if k < len(sizes) else value_of(key) + 2):

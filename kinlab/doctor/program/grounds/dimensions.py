@@ -181,6 +181,8 @@ class Dimensions:
         if not self._known or edit.part == DATA or len(edit.changes) != 1:
             return 0.0
         (change,) = edit.changes
+        if isinstance(getattr(change.holder, "ctx", None), ast.Store):
+            return 0.0  # where a value is put, which has a dimension of its own
         old, new = change.now, change.new
         if not isinstance(old, ast.expr) or not isinstance(new, ast.expr):
             if not isinstance(change.holder, ast.expr) or isinstance(change.field, int):

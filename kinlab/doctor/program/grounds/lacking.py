@@ -15,7 +15,7 @@ from itertools import combinations_with_replacement
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import called, copied, names, nodes
+from kinlab.doctor.bytecode.syntax import called, copied, factors, names, nodes
 from kinlab.doctor.glossary.textbook import Glossary
 from kinlab.doctor.program.edits.scope.forms import statement_of, summands
 from kinlab.doctor.program.edits.scope.part import Scope, standing
@@ -33,6 +33,8 @@ _FRONTS = (1.0, 2.0, 0.5)
 """What may stand in front of it."""
 _MOST = 6
 """Products that are tried in one place."""
+_IDLE, _FEW = 100, 6
+"""As how often what nothing uses counts among the numbers of a part; how many of these."""
 _COST, _LONGER = 1.1, 0.01
 """What one is far-fetched of two factors, and what each further one adds."""
 
@@ -57,14 +59,39 @@ def lacking_terms(
         if value is None or _is_among(value, things):
             continue
         if here.part not in tables:
-            tables[here.part] = _Products(trial.trees[here.part], observed, len(known))
+            idle = _unread(trial, scope)
+            tables[here.part] = _Products(trial.trees[here.part], observed, len(known), idle)
         own = {ast.unparse(one) for one in summands(here.node)}
         line = statement_of(here.above).lineno
-        for op, term, factors in tables[here.part].making(things - value)[:_MOST]:
+        last = factors([*summands(here.node)][-1])
+        made = tables[here.part].making(things - value)
+        made.sort(key=lambda one: abs(one[2] - len(last)))  # as long as what stands beside it
+        for op, product, count in made[:_MOST]:
+            term = _as_beside(product, last)
             late = any(scope.set_at.get(name, 0) > line for name in names(term))
             if not late and ast.unparse(term) not in own:
                 new = ast.BinOp(here.node, op, term)
-                yield here.instead(new, "missing term", _COST + _LONGER * (factors - 2))
+                yield here.instead(new, "missing term", _COST + _LONGER * (count - 2))
+
+
+def _as_beside(product: ast.expr, beside: list[ast.expr]) -> ast.expr:
+    """A product with its factors in the order of those that begin so in another term."""
+    letters = [ast.unparse(one)[:1].lower() for one in beside]
+    own = factors(product)
+    at = [
+        letters.index(x) if x in letters else -1 for x in (ast.unparse(y)[:1].lower() for y in own)
+    ]
+    order = sorted(range(len(own)), key=lambda k: at[k])
+    return reduce(lambda one, other: ast.BinOp(one, ast.Mult(), other), [own[k] for k in order])
+
+
+def _unread(trial: Trial, scope: Scope) -> dict[str, float]:
+    """Numbers with names that no function reads: what is made of them may have been forgotten."""
+    parts = zip(trial.program.parts, trial.trees, strict=True)
+    read = {name for part, tree in parts if not part.sets for name in names(tree, ast.Load)}
+    every = {name: scope.level_of(name) for name in (*trial.program.space, *scope.unused)}
+    free = [name for name, value in every.items() if value and name not in read]
+    return {name: every[name] for name in free[:_FEW] if name[:1] != "_"}
 
 
 def _scalars(known: Sequence[Glossary]) -> Array:
@@ -90,11 +117,23 @@ def _is_among(value: Array, things: Array) -> bool:
 
 
 class _Products:
-    """All products of the numbers of one part, by their size at the first state."""
+    """All products of the numbers of one part, by their size at the first state.
 
-    def __init__(self, tree: ast.AST, observed: Observed, states: int) -> None:
-        met: Counter[str] = Counter()
-        self.atoms: dict[str, tuple[ast.expr, Array]] = {}
+    Args:
+        tree: the part.
+        observed: its expressions.
+        states: at which they were watched.
+        idle: numbers that nothing uses, by their names: these come first.
+    """
+
+    def __init__(
+        self, tree: ast.AST, observed: Observed, states: int, idle: dict[str, float]
+    ) -> None:
+        met: Counter[str] = Counter(dict.fromkeys(idle, _IDLE))
+        self.atoms: dict[str, tuple[ast.expr, Array]] = {
+            name: (ast.Name(name, ast.Load()), np.full(states, value))
+            for name, value in idle.items()
+        }
         for node in nodes(tree):
             if not isinstance(node, ast.expr) or not _may_be_factor(node):
                 continue
@@ -102,7 +141,8 @@ class _Products:
             if value is not None and value.all():
                 met[text] += 1
                 self.atoms.setdefault(text, (node, value))
-        self.texts = [text for text, _count in met.most_common(_ATOMS)]
+        self.texts = [text for text, _count in met.most_common() if not self._is_named(text)]
+        self.texts = self.texts[:_ATOMS]
         values = np.array([self.atoms[text][1] for text in self.texts]).reshape(-1, states)
         sizes, signs = np.log(np.abs(values)), np.sign(values)
         self.ways: list[tuple[int, ...]] = []
@@ -111,6 +151,13 @@ class _Products:
         self.sizes = np.array([sizes[[*way]].sum(axis=0) for way in self.ways]).reshape(-1, states)
         self.signs = np.array([signs[[*way]].prod(axis=0) for way in self.ways]).reshape(-1, states)
         self.order = np.argsort(self.sizes[:, 0], kind="stable")
+
+    def _is_named(self, text: str) -> bool:
+        """Whether something has a name: cos(t1) beside c1."""
+        node, value = self.atoms[text]
+        names_ = (x for x, _value in self.atoms.values() if isinstance(x, ast.Name))
+        others = (self.atoms[one.id][1] for one in names_) if isinstance(node, ast.Call) else ()
+        return any(np.array_equal(value, other) for other in others)
 
     def making(self, wanted: Array) -> list[tuple[ast.operator, ast.expr, int]]:
         """The products that are one of the numbers wanted, (G, S), or less; the shortest first."""

@@ -50,8 +50,9 @@ _TRIED = 2000
 """Threes that are run, of each way to tell them."""
 _ALL, _LEAST = 180_000_000, 90_000_000
 """Work that may be done for single edits and those tried together; the least for these."""
-_ALONE = 150
-"""Edits of which any two are run alone where lanes cannot follow them."""
+_ALONE, _UNFORESEEN = 150, 300
+"""Edits of which any two are run alone where lanes cannot follow them; and pairs of which nothing
+says that they may do."""
 _LIKELY, _PRODUCT = 300, 600_000
 """Edits of which any three are run together, the product of whose ranks is no larger."""
 _SOONEST = 60
@@ -184,15 +185,18 @@ class TriedTogether:
             yield sorted(found, key=self.known.cost)
 
     def beside_lanes(self) -> list[Chosen]:
-        """Pairs of the likeliest that lanes cannot follow, the likeliest first."""
+        """Pairs of the likeliest that lanes cannot follow, the likeliest first.
+
+        Of those that cannot be foreseen, as one leaves what the other puts elsewhere, some.
+        """
         few = np.arange(min(_ALONE, len(self.known.alike)))
         first, last = np.triu_indices(len(few), 1)
         followed = np.isin(few, self.sound)
         some = ~(followed[first] & followed[last])
         pairs = np.stack([first[some], last[some]], axis=1)
-        pairs = pairs[self._possible_of(pairs)]
-        order = np.argsort((pairs + 1).prod(axis=1), kind="stable")
-        return [(int(i), int(j)) for i, j in pairs[order]]
+        order = np.lexsort(((pairs + 1).prod(axis=1), ~self._possible_of(pairs)))
+        foreseen = int(self._possible_of(pairs).sum())
+        return [(int(i), int(j)) for i, j in pairs[order[: foreseen + _UNFORESEEN]]]
 
     def _in_turn(self) -> Iterator[tuple[int, Any]]:
         """Pairs with their rank: of the likeliest all, then what is possible, then all others."""

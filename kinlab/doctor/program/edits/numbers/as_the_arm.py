@@ -88,23 +88,30 @@ def _base_set(trial: Trial, observed: Observed, table: DHTable) -> Iterator[Prog
     base = np.round(np.asarray(table.base, dtype=float), _DECIMALS) + 0.0
     if np.array_equal(base, np.eye(4)):
         return
-    new = ast.parse(f"np.diag({np.diagonal(base).tolist()})", mode="eval").body
-    if not np.array_equal(base, np.diag(np.diagonal(base))):
-        new = ast.parse(f"np.array({base.tolist()})", mode="eval").body
     if np.array_equal(base @ base, np.eye(4)):  # its inverse, and it stays as it is typed
         for here in places(0, trial.trees[0]):
             given = [one.arg for one in trial.trees[0].args.args]
             named = isinstance(here.node, ast.Name) and here.node.id in given
             if named and observed.shape(here.node) == (4, 4):
-                product = ast.BinOp(new, ast.MatMult(), here.node)
+                product = ast.BinOp(_written(base), ast.MatMult(), here.node)
                 yield here.instead(product, "missing matrix", _END)
-    for part, tree in enumerate(trial.trees):
-        for line in (node for node in nodes(tree) if isinstance(node, ast.Assign)):
-            seen = observed.of(line.value) if isinstance(line.value, ast.Call) else None
-            values = seen.values if seen is not None and seen.shape == (4, 4) else ()
-            if values and all(np.array_equal(value, np.eye(4)) for value in values):
-                change = FieldChange(line, "value", new)
-                yield ProgramEdit(part, (change,), "number", _END, line.value)
+    ends = {4: base, 3: base[:3, :3]}
+    for here in (one for part, tree in enumerate(trial.trees) for one in places(part, tree)):
+        seen = observed.of(here.node) if isinstance(here.node, ast.Call) else None
+        size = len(seen.values[0]) if seen is not None and seen.values and seen.shape else 0
+        end = ends.get(size, np.eye(size))
+        if seen is None or seen.shape != end.shape or np.array_equal(end, np.eye(size)):
+            continue
+        if all(np.array_equal(value, np.eye(size)) for value in seen.values):
+            yield here.instead(_written(end), "number", _END)
+
+
+def _written(value: Array) -> ast.expr:
+    """A matrix as it is typed."""
+    diagonal = np.diagonal(value)
+    plain = np.array_equal(value, np.diag(diagonal))
+    text = f"np.diag({diagonal.tolist()})" if plain else f"np.array({value.tolist()})"
+    return ast.parse(text, mode="eval").body
 
 
 def _matrix(value: Array) -> str:

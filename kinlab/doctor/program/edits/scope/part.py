@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
@@ -13,6 +14,7 @@ from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import Here, places
 from kinlab.doctor.program.trial import Trial
 
+_SUM = re.compile(r"([A-Za-z]+)(\d+) \+ ([A-Za-z]+)(\d+)")
 _UNUSED = 0.2
 """What it is likelier that something is missing which is set and used nowhere."""
 
@@ -31,6 +33,8 @@ class Scope(Knowledge):
         self._inside: frozenset[str] = frozenset()
         self._known_here: dict[tuple[frozenset[str], Shape], dict[str, ast.expr]] = {}
         self._names_in: dict[int, frozenset[str]] = {}
+        both = (_SUM.fullmatch(text) for text in self.pieces.get((), {}))
+        self.sums = {(x[1], x[3]) for x in both if x is not None and x[2] == x[4]}
 
     def are_halves(self, one: str, other: str) -> bool:
         """Whether one of two numbers of one link is half of the other: ``lc1`` of ``l1``."""
@@ -46,6 +50,11 @@ class Scope(Knowledge):
             return False
         doubled = first.shape == last.shape and bool(first.any())
         return doubled and any(np.array_equal(2 * x, y) for x, y in ((first, last), (last, first)))
+
+    def level_of(self, name: str) -> float:
+        """The number that a name stays at; 0 of what is none, or moves."""
+        value = self.levels.get(name, self.space.get(name))
+        return float(value) if isinstance(value, int | float) else 0.0
 
     def is_idle(self, node: ast.AST) -> bool:
         """Whether it is what is set and used nowhere, or an entry of that."""

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from itertools import combinations
 
 from kinlab.doctor.bytecode.syntax import called, names, nodes
+from kinlab.doctor.program.edits import chains
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.operators import DIAGONALS
 from kinlab.doctor.program.edits.single.whole import plus, whole_constant
@@ -20,6 +21,8 @@ _ARGUMENTS, _APART = 4, 0.03
 """The same of arguments; what it costs more of those that do not stand side by side."""
 _ARCS = ("arcsin", "asin", "arccos", "acos")
 """Functions that do not tell the quadrant."""
+_LED = 1.01
+"""Cost of a difference the other way, which an axis or a rate is crossed with."""
 _QUADRANT = 0.99
 """Cost of the angle of two sides for that of their quotient."""
 _FAMILIES = (
@@ -105,6 +108,11 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
                 continue
             swapped = [*plain]
             swapped[i], swapped[j] = swapped[j], swapped[i]
+            led = scope.crosses(node) and isinstance(plain[1], ast.BinOp)
+            led = led and isinstance(getattr(plain[1], "op", None), ast.Sub)
+            if led and not isinstance(plain[0], ast.BinOp):  # z x (p - o) for z x (o - p)
+                turned = [plain[0], chains.opposite(plain[1])]
+                yield here.within(node, "args", turned, "sign", _LED)
             cost = 1.02 if scope.crosses(node) else 1.05 if name in _ORDERED else 1.15
             yield here.within(node, "args", swapped, "order", cost + _APART * (j > i + 1))
         if name in ("arctan2", "atan2") and len(plain) == 2:

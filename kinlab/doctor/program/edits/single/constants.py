@@ -49,7 +49,8 @@ def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
     own = own and given is not None and called(given) not in (*SIZES, *ANGLES)
     if value == 0 and scope.has_numpy and (own or measured(here.parent)):
         half: ast.expr = ast.BinOp(PI, ast.Div(), number(2))
-        for turned in (half, ast.UnaryOp(ast.USub(), half)):
+        minus = ast.BinOp(ast.UnaryOp(ast.USub(), PI), ast.Div(), number(2))
+        for turned in (half, minus):
             yield here.instead(turned, "number", 1.13)
     if (
         isinstance(value, int)

@@ -22,6 +22,8 @@ _HALVES, _TYPED = (2, 0.5), 1.045
 """Factors that stand in front, and the cost of one that does not belong there."""
 _TAKEN = 1.04
 """Cost of taking away a cross product that is added: its vectors are rather exchanged."""
+_BOTH_SIGNS = 1.06
+"""Cost of the signs of two terms for one another."""
 _TURNED = 1.01
 """Cost of parentheses behind a matrix: ``R.T @ (v + w)`` for ``R.T @ v + w``."""
 _DIVIDED = 1.2
@@ -59,6 +61,9 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
         factor = isinstance(here.parent, ast.BinOp) and not isinstance(here.parent.op, ast.Pow)
         if factor and observed.shape(node) == ():
             yield here.instead(ast.BinOp(node, ast.Pow(), number(2)), "power", 1.12)
+        if not (isinstance(here.parent, ast.BinOp) and isinstance(here.parent.op, chains.SUMS)):
+            for new in chains.signs_exchanged(node):
+                yield here.instead(new, "sign", _BOTH_SIGNS)
         for new in chains.crosswise(node):
             yield here.instead(new, "names exchanged", 1.13)
         for new in chains.called_once(node):
