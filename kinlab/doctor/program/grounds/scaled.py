@@ -267,7 +267,8 @@ def own_rows(robot: Robot) -> list[Array]:
     if table is None:
         return []
     rows = [np.array(link.com, dtype=float) for link in table.links]
-    rows += [np.diag(np.array(link.inertia, dtype=float)) for link in table.links]
+    tensors = [np.array(link.inertia, dtype=float) for link in table.links]
+    rows += [np.diag(one) for one in tensors] + [one.ravel() for one in tensors]
     for name in ("a", "d", "mass"):
         rows.append(np.array([getattr(link, name) for link in table.links], dtype=float))
     return [row for row in rows if row.any()]

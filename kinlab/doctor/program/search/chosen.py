@@ -134,6 +134,12 @@ def _makes_one_of(rows: list[Array], edit: ProgramEdit) -> bool:
     first, row = edit.changes[0], getattr(edit.node, "elts", None)
     if edit.part != DATA:
         values = [getattr(one, "value", None) for one in first.new] if row else []
+    elif isinstance(first.holder, np.ndarray):
+        table = first.holder.copy()
+        for change in edit.changes:
+            if change.holder is first.holder:
+                table[change.field] = change.new
+        values = table.ravel().tolist()
     elif isinstance(first.holder, list):
         values = [*first.holder]
         for change in edit.changes:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import ast
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
+from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import called, copied, names, nodes
 from kinlab.doctor.program.edits.chains import without_numbers
 from kinlab.doctor.program.edits.scope import counters, functions, idle, members, pieces, terms
@@ -33,6 +34,7 @@ class Knowledge:
         shapes: names of numbers, by their shapes.
         lists: names of lists, by the shapes of their entries.
         levels: names of numbers that stay the same, with these.
+        vectors: names of rows, with what they were.
         attributes: of objects, by their shapes.
         keys: of dictionaries, by the shapes of what is there.
         idle_keys: of these, those that the program never asks for.
@@ -72,6 +74,7 @@ class Knowledge:
         self.pieces: pieces.Pieces = {}
         self.idle: list[pieces.Sized] = []
         self.levels: dict[str, float] = {}
+        self.vectors: dict[str, Sequence[Array]] = {}
         self._ask_for_functions(trial, tree)
         self._take_sums_apart(tree)
         gathered = self._enter_loops(trial, tree)
@@ -151,6 +154,8 @@ class Knowledge:
             return
         if isinstance(node, ast.Name):
             self.shapes.setdefault(node.id, seen.shape)
+            if len(seen.shape) == 1 and seen.values:
+                self.vectors.setdefault(node.id, seen.values)
             if seen.shape == () and len({*map(float, seen.values)}) == 1:
                 self.levels[node.id] = float(seen.values[0])
             if seen.whole and seen.shape == () and {*map(float, seen.values)} != {-1.0, 1.0}:

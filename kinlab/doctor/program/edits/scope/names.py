@@ -127,7 +127,14 @@ def unpacked(
 
 
 def _given_by(value: ast.expr, trial: Trial) -> ast.Tuple | None:
-    """The entries that a function of the program's gives, where it is called."""
+    """The entries that a function of the program's gives, where it is called, or that a list of
+    which one is taken was filled with."""
+    if isinstance(value, ast.Subscript):
+        every = (node for tree in trial.trees for node in nodes(tree))
+        calls = [x for x in every if isinstance(x, ast.Call) and called(x) == "append" and x.args]
+        own = f"{ast.unparse(value.value)}.append"
+        kept = [x.args[0] for x in calls if ast.unparse(x.func) == own]
+        return kept[0] if kept and isinstance(kept[0], ast.Tuple) else None
     name = called(value) if isinstance(value, ast.Call) else ""
     for part, tree in zip(trial.program.parts, trial.trees, strict=True):
         if name and part.name == name:

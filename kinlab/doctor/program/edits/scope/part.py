@@ -40,6 +40,10 @@ class Scope(Knowledge):
         """Whether one of two numbers of one link is half of the other: ``lc1`` of ``l1``."""
         digits = {name[len(name.rstrip("0123456789")) :] for name in (one, other)}
         values = [self.levels.get(name, self.space.get(name)) for name in (one, other)]
+        if digits == {""} and one in self.vectors and other in self.vectors:
+            pairs = [*zip(self.vectors[one], self.vectors[other], strict=False)]
+            return any(all(np.allclose(2 * x, y) for x, y in way) for way in (
+                pairs, [(y, x) for x, y in pairs]))  # fmt: skip
         if len(digits) > 1 or not all(isinstance(x, float | list | np.ndarray) for x in values):
             return False
         if type(values[0]) is type(values[1]) is float:
