@@ -120,7 +120,7 @@ SLIPS = [
     ("T_max1", "sqrt(G11**2 - G12**2)*a_max", "- G12**2 should be + G12**2"),
     ("T_max1", "sqrt(G11**2 + G12**2)", "the factor amax is missing"),
     ("j", "30*N_max/(pi*Thetad_max)", "pi*N_max/(30*Thetad_max)"),
-    ("j", "pi*N_max/(60*Thetad_max)", "2*pi*N_max"),
+    ("j", "pi*N_max/(60*Thetad_max)", "60 should be 30"),
     ("j", "N_max/(30*Thetad_max)", "pi*N_max"),
     ("tau_M", "T_max*j", "T_max/j"), ("tau_M", "j/T_max", "T_max/j"),
     ("I_Mmax", "I_L/j", "j should be j**2"), ("I_Mmin", "I_L/(2*j**2)", "2 should be 3"),

@@ -68,8 +68,9 @@ def lacking_terms(
         made.sort(key=lambda one: abs(one[2] - len(last)))  # as long as what stands beside it
         for op, product, count in made[:_MOST]:
             term = _as_beside(product, last)
+            counted = {*scope.counters} - scope.counting  # by loops that are none around it
             late = any(scope.set_at.get(name, 0) > line for name in names(term))
-            if not late and ast.unparse(term) not in own:
+            if not late and counted.isdisjoint(names(term)) and ast.unparse(term) not in own:
                 new = ast.BinOp(here.node, op, term)
                 yield here.instead(new, "missing term", _COST + _LONGER * (count - 2))
 

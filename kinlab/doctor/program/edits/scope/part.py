@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 
 from kinlab.doctor.bytecode.syntax import called, names, nodes
+from kinlab.doctor.program.edits.numbers.data import is_number
 from kinlab.doctor.program.edits.scope.known import Knowledge
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import Here, places
@@ -58,7 +59,7 @@ class Scope(Knowledge):
     def level_of(self, name: str) -> float:
         """The number that a name stays at; 0 of what is none, or moves."""
         value = self.levels.get(name, self.space.get(name))
-        return float(value) if isinstance(value, int | float) else 0.0
+        return float(value) if is_number(value) else 0.0
 
     def is_idle(self, node: ast.AST) -> bool:
         """Whether it is what is set and used nowhere, or an entry of that."""
