@@ -114,7 +114,9 @@ class OtherArms:
             return False
         whole = larger is not None and larger.whole and self.at(larger) is not None
         free = any(edit.numbers is not None and is_free(edit.numbers[1]) for edit in several)
-        return (whole or free) and not (larger is not None and self.hold_for(larger))
+        if not (whole or free) or (larger is not None and self.hold_for(larger)):
+            return False  # nor is it where it holds for unrelated numbers, understood wholly or not
+        return apart is None or self.at(apart) is None or not self.hold_for(apart)
 
     def _counts(self, edit: ProgramEdit) -> bool:
         """Whether an edit is of a whole number in the text, a factor: of none of the arm's."""
