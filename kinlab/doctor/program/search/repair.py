@@ -396,10 +396,15 @@ class LineSearch:
 
 
 def _add_the_same(one: ProgramEdit, other: ProgramEdit) -> bool:
-    """Whether two edits add one term, in two lines of one sum."""
-    put = [edit.changes[0].new for edit in (one, other) if edit.kind == "missing term"]
-    terms = [ast.dump(new.right) for new in put if isinstance(new, ast.BinOp)]
-    return len(terms) > 1 and terms[0] == terms[1]
+    """Whether two edits add one term, in two lines of one sum: ``Q = Q + a`` and ``Q = Q + b``."""
+    put = [edit.changes[0] for edit in (one, other) if edit.kind == "missing term"]
+    lines = [(x.holder, x.new) for x in put if isinstance(x.holder, ast.Assign)]
+    added = [
+        (ast.dump(line.targets[0]), ast.dump(new.right))
+        for line, new in lines
+        if isinstance(new, ast.BinOp)
+    ]
+    return len(added) > 1 and added[0] == added[1]
 
 
 def _calls(edit: ProgramEdit, functions: set[str]) -> bool:
