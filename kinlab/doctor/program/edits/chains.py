@@ -69,9 +69,11 @@ def signs_exchanged(node: ast.BinOp) -> Iterator[ast.expr]:
 def times(number: ast.expr, node: ast.expr) -> ast.BinOp:
     """A number times something: of a product of vectors in front, ``0.5*w @ I @ w``."""
     first, factors = chain(node, (ast.MatMult,))
-    if not factors or not isinstance(first, _NAMES):
+    front, rest = chain(first, (ast.Mult,))
+    if not factors or not isinstance(front, _NAMES):
         return ast.BinOp(number, ast.Mult(), node)
-    more: ast.expr = joined(ast.BinOp(number, ast.Mult(), first), factors)
+    first = joined(ast.BinOp(number, ast.Mult(), front), rest)
+    more: ast.expr = joined(first, factors)
     assert isinstance(more, ast.BinOp)
     return more
 

@@ -60,6 +60,8 @@ _SUMMED = 0.06
 """What a sign or factor costs more in a sum of names, each of which has a line of its own."""
 _ENTRIES = ast.Name | ast.Subscript | ast.Attribute
 """What a term more may be, of which one more is rather a factor 2."""
+_NUMBERED = 1.08
+"""Cost of another joint's number in a test for one: ``i == 2`` for ``i == 3``."""
 _FILLED = 1.04
 """Cost of another array that is filled, too."""
 _ROWS = 6
@@ -419,8 +421,9 @@ def _equal(test: ast.Compare) -> bool:
 def _comparison_of(here: Here, test: ast.expr) -> Iterator[ProgramEdit]:
     if isinstance(test, ast.Compare) and len(test.comparators) == 1:
         right = test.comparators[0]
+        cost = _NUMBERED if _equal(test) and whole_constant(right) else 1.25
         for step in (1, -1):
-            yield here.within(test, "comparators", [plus(right, step)], "condition", 1.25)
+            yield here.within(test, "comparators", [plus(right, step)], "condition", cost)
 
 
 def _filled_beside(here: Here, target: ast.Subscript, observed: Observed) -> list[str]:
