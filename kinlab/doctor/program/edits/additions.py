@@ -44,6 +44,8 @@ _MIXED = 0.96
 """Cost of a lost 2 in the mixed term of a square: a length for a distance is as soon mistaken."""
 _MIXED_SQUARE = 1.07
 """Cost of a product of two rates for a square, or of a square for it."""
+_AS_BESIDE = 1.1
+"""Cost of the entry beside for a zero."""
 _AS_THERE = 0.99
 """Cost of a sum for one of its terms, where another link has that sum."""
 _BESIDE_A_PART = 1.08
@@ -84,6 +86,9 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
             yield here.instead(copied(term), "number", 1.06)
     if zero and isinstance(parent, ast.Call | ast.List | ast.Tuple):
         yield from _instead_of_zero(here, scope)
+    for one in parent.elts if zero and isinstance(parent, ast.List | ast.Tuple) else ():
+        if isinstance(one, ast.Subscript):
+            yield here.instead(copied(one), "number", _AS_BESIDE)
     if isinstance(parent, ast.Subscript | ast.Attribute) or zero or literal:
         return
     operated = isinstance(parent, ast.BinOp)
@@ -142,8 +147,8 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         given = isinstance(parent, ast.Call) and called(parent) in scope.functions
         if (entry or given) and isinstance(node, ast.Name | ast.Subscript):
             yield from _quarters(here, scope)
-    if whole or summand or argument or product:
-        yield from _terms(here, scope, shape, whole)
+    if listed or summand or argument or product:
+        yield from _terms(here, scope, shape, whole or here.field == "elt")
 
 
 def _in_the_other_case(here: Here) -> Iterator[ast.expr]:

@@ -268,6 +268,9 @@ def _cross_products(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     names = [one for one in plain if not isinstance(one, ast.BinOp)]
     turned = [x for x in scope.pieces_here(_VECTOR).values() if _is_turned(x)]
     rates = [one for one in (*names, *turned) if _begins(_last(one), _RATES)][:_FEW]
+    axial = [x for x in scope.pieces_here(_VECTOR).values() if isinstance(x, ast.BinOp)]
+    axial = [x for x in axial if isinstance(x.op, ast.Mult) and _begins(x.left, _RATES)]
+    rates += [x for x in axial if isinstance(x.left, ast.Name | ast.Subscript)][:_FEW]
     vectors = [one for one in plain if isinstance(one, ast.BinOp) or _begins(one, _ARMS)]
     own = ast.unparse(here.node)
     for both in scope.pieces_here(_VECTOR).values():  # of w = R.T @ w + qd*z

@@ -42,6 +42,7 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
     if shape == ():
         if isinstance(node, ast.BinOp) and not isinstance(op, _SUMS):
             yield from _with_indices_exchanged(here, scope)
+            yield from _half_of_its_own(here, scope)
         if isinstance(parent, ast.List | ast.Tuple) or _is_entry(parent):
             yield here.instead(number(0.0), "extra term", 1.18)
         if isinstance(op, _SUMS):
@@ -233,6 +234,20 @@ def _with_indices_exchanged(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
         if ast.unparse(new) not in known:
             for op, cost in ((ast.Sub(), 1.04), (ast.Add(), 1.06)):
                 yield here.instead(ast.BinOp(here.node, op, new), "missing term", cost)
+
+
+def _half_of_its_own(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """Half a length for the link's own alone: ``L[k]/2 if k == i else L[k]``."""
+    node = here.node
+    halved = isinstance(node.op, ast.Div) and getattr(node.right, "value", 0) == 2
+    whole = node.left if halved else node.right
+    half = halved or (isinstance(node.op, ast.Mult) and getattr(node.left, "value", 0) == 0.5)
+    if not half or not isinstance(whole, ast.Subscript) or not isinstance(whole.slice, ast.Name):
+        return
+    for other in scope.counting:
+        if other != whole.slice.id and whole.slice.id in scope.counting:
+            test = ast.Compare(whole.slice, [ast.Eq()], [ast.Name(other, ast.Load())])
+            yield here.instead(ast.IfExp(test, node, whole), "condition", 1.12)
 
 
 def _counted(term: ast.expr, counters: Sequence[str]) -> list[str]:

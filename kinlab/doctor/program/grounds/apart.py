@@ -8,7 +8,6 @@ the arm's is told from its value, from its name, and from its place in a list.
 from __future__ import annotations
 
 import ast
-import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, islice
@@ -19,7 +18,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import table_of
-from kinlab.doctor.program.edits.numbers.data import NumberPlace, leaves, together
+from kinlab.doctor.program.edits.numbers.data import together
 from kinlab.doctor.program.grounds.called import kinds_called, unlike
 from kinlab.doctor.program.grounds.labels import Label, Labels
 from kinlab.doctor.program.grounds.scaled import (
@@ -30,11 +29,12 @@ from kinlab.doctor.program.grounds.scaled import (
     moments,
     named_at_will,
     numbers_of,
+    stays,
     twisted_by,
 )
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA
-from kinlab.doctor.program.trial import FailedError, NoProgramError, Trial, quietly
+from kinlab.doctor.program.trial import Trial
 from kinlab.model.dh import DHLink, DHTable
 from kinlab.model.link import Convention
 from kinlab.model.robot import Robot
@@ -131,7 +131,7 @@ def arm_apart(
         return None
     named = any(hasattr(type(trial.space.get(n)), "_fields") for n in trial.program.held)
     whole = reader.whole and not (named or holds_an_arm(trial)) and len(ways) <= _WAYS
-    whole = whole and _stays(trial, puts[0])
+    whole = whole and stays(trial, puts[0])
     return OtherArm(other, changed, whole, frozenset(reader.fitting), reader.odd)
 
 
@@ -143,30 +143,6 @@ def _opposite(table: DHTable, carried: set[Which]) -> dict[Which, Which]:
         for (i, there), (j, back) in combinations(lengths, 2)
         if there == -back and {("a", i), ("a", j)} & carried
     }
-
-
-def _stays(trial: Trial, put: Sequence[tuple[NumberPlace, float]]) -> bool:
-    """Whether a program's numbers are what is put there also when its lines have run anew."""
-    if not any(part.sets for part in trial.program.parts):
-        return True
-
-    def held() -> dict[Any, float]:
-        return {(one.node, one.place): float(one.value) for one in leaves(trial)}
-
-    expected = held()
-    new = {(one.node, one.place): x for one, x in put if one.part == DATA}
-    expected |= {key: x for key, x in new.items() if key in expected}  # others nothing uses
-    edits = together(put)
-    changes = [change for edit in edits for change in edit.changes]
-    try:
-        with quietly(), trial.changed({edit.part for edit in edits}, changes):
-            trial.load()
-            found = held()
-    except (NoProgramError, FailedError):
-        return False
-    return found.keys() == expected.keys() and all(
-        math.isclose(found[key], x, rel_tol=TOLERANCES.same_number) for key, x in expected.items()
-    )
 
 
 class _Reader:

@@ -26,6 +26,7 @@ from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.numbers.data import (
     NumberPlace,
     holds_more,
+    leaves,
     leaves_of,
     numbers,
     together,
@@ -37,7 +38,7 @@ from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.own.plain import attributes, home
 from kinlab.doctor.program.places import DATA, ProgramEdit, changed
 from kinlab.doctor.program.read import of_numbers
-from kinlab.doctor.program.trial import Trial, named_in
+from kinlab.doctor.program.trial import FailedError, NoProgramError, Trial, named_in, quietly
 from kinlab.errors import KinlabError, already_said
 from kinlab.fivebar.linkage import FiveBar
 from kinlab.model.dh import DHLink, DHTable
@@ -158,14 +159,16 @@ def other_arm(
         elif one.alone and isinstance(one.place.value, float) and not one.place.place:
             whole = whole and named_at_will(one.value)
     ways: list[tuple[ProgramEdit, ...]] = []
+    put: list[tuple[NumberPlace, float]] = []
     for chosen in islice(product(*(factors for _some, factors in choices.values())), _WAYS + 1):
-        changed = [
+        changed_ = [
             one.times(factor)
             for (some_, _factors), factor in zip(choices.values(), chosen, strict=True)
             for one in some_
             if factor != 1.0
         ]
-        ways += [tuple(together(changed))] if changed else []
+        put = put or changed_
+        ways += [tuple(together(changed_))] if changed_ else []
     if not ways:
         return None
     larger = _scaled(table, twisted)
@@ -173,8 +176,33 @@ def other_arm(
         return None
     whole = whole and len(ways) <= _WAYS and not holds_an_arm(trial)
     whole = whole and not _one_for_several(found, kinds)
+    whole = whole and stays(trial, put)
     other = OtherArm(larger, tuple(ways[:_WAYS]), whole)
     return replace(other, whole=whole and _works_out_too(trial, robot, other))
+
+
+def stays(trial: Trial, put: Sequence[tuple[NumberPlace, float]]) -> bool:
+    """Whether a program's numbers are what is put there also when its lines have run anew."""
+    if not any(part.sets for part in trial.program.parts):
+        return True
+
+    def held() -> dict[Any, float]:
+        return {(one.node, one.place): float(one.value) for one in leaves(trial)}
+
+    expected = held()
+    new = {(one.node, one.place): x for one, x in put if one.part == DATA}
+    expected |= {key: x for key, x in new.items() if key in expected}  # others nothing uses
+    edits = together(put)
+    changes = [change for edit in edits for change in edit.changes]
+    try:
+        with quietly(), trial.changed({edit.part for edit in edits}, changes):
+            trial.load()
+            found = held()
+    except (NoProgramError, FailedError):
+        return False
+    return found.keys() == expected.keys() and all(
+        math.isclose(found[key], x, rel_tol=TOLERANCES.same_number) for key, x in expected.items()
+    )
 
 
 def _works_out_too(trial: Trial, robot: Robot, other: OtherArm) -> bool:

@@ -51,3 +51,14 @@ def counted(lists: Mapping[str, Shape], counters: Sequence[str]) -> Iterator[Siz
     for name, shape in lists.items():
         for counter in counters:
             yield shape, entry(named(name), named(counter))
+
+
+def of_the_next(
+    pieces: Pieces, lists: Mapping[str, Shape], unread: Sequence[str]
+) -> Iterator[Sized]:
+    """The entries of lists that nothing reads, where others are asked for: ``P[i + 1]``."""
+    every = [x for some in pieces.values() for x in some.values() if isinstance(x, ast.Subscript)]
+    keys = {ast.unparse(x.slice): x.slice for x in every if isinstance(x.slice, ast.BinOp)}
+    for name in unread:
+        for key in keys.values() if lists.get(name) else ():
+            yield lists[name], ast.Subscript(named(name), key, ast.Load())

@@ -61,7 +61,12 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
                 if text != argument:  # what is odd among others is rather meant as they are
                     odd = scope.taken[argument] == 1 < scope.taken[text] + 1
                     yield here.within(node.args, 0, angle, "argument", 1.08 if odd else 1.15)
+    if isinstance(node.func, ast.Name) and name not in ANGLES:
+        for other in _turned_alias(name, scope):
+            yield here.within(node, "func", ast.Name(other, ast.Load()), "sin/cos", 1.0)
     if scope.crosses(node):
+        inner = ast.Call(node.func, [node.args[0], node], [])  # w x (w x r) for w x r
+        yield here.instead(inner, "missing factor", 1.1)
         for factor in node.args:
             yield here.instead(factor, "extra factor", 1.1)
     if name in DIAGONALS and len(node.args) > 1:
@@ -143,6 +148,15 @@ def _of_both_sides(here: Here, scope: Scope, name: str) -> Iterator[ProgramEdit]
     if own is not None and isinstance(share, ast.BinOp) and isinstance(share.op, ast.Div):
         new = ast.Call(own, [share.left, share.right], [])
         yield here.instead(new, "function", _QUADRANT)
+
+
+def _turned_alias(name: str, scope: Scope) -> Iterator[str]:
+    """The program's name for the cosine, of its name for the sine: ``C`` of ``S = np.sin``."""
+    waves = {"sin": "cos", "cos": "sin"}
+    own = getattr(scope.space.get(name), "__name__", "")
+    for other, value in scope.space.items() if own in waves else ():
+        if getattr(value, "__name__", "") == waves[own] and other not in waves:
+            yield other
 
 
 def _of_two(here: Here, scope: Scope, name: str) -> Iterator[ProgramEdit]:
