@@ -107,6 +107,9 @@ def _inline(text: str) -> tuple[str, bool]:
         return "\n".join(equations), True
     if not _INLINE.search(outside):
         return text, False
+    ends = _DOLLARS.sub("\0", text).rpartition("\0")[2].strip(" \n.;。")
+    if len(equations) == 1 and told and not ends:  # words in front of it alone
+        return equations[0], True
     return _DOLLARS.sub(lambda found: f" {found[2]} ", text).strip(), True
 
 

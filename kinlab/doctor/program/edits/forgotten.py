@@ -65,6 +65,8 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
         return
     if isinstance(node, ast.Call) and called(node) == "zeros" and len({*shape}) == 1 < len(shape):
         yield from _with_a_diagonal(here, scope, shape[0])
+    if isinstance(node, ast.Call) and called(node) == "zeros" and len(shape) == 1:
+        yield from _of_unread_rows(here, scope, shape)
     if isinstance(node, ast.Call) and called(node) == "zeros" and not _is_filled(here):
         for _text, vector in scope.simple(shape):
             if not isinstance(getattr(vector, "slice", None), ast.Tuple):  # a part of a matrix
@@ -292,6 +294,22 @@ def _of_idle_numbers(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
         for other in [x for x in every if x not in idle][: 2 * _FEW]:
             term = ast.BinOp(one, ast.Mult(), other)
             yield here.instead(ast.BinOp(here.node, ast.Add(), term), "missing term", 1.12)
+
+
+def _of_unread_rows(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
+    """A row that nothing reads times another, for a sum that begins with nothing: ``Jm*qdd``."""
+    rows = [x for _text, x in scope.simple(shape)]
+    unread = [x for x in rows if scope.is_idle(x) or _key_of(x) in scope.idle_keys]
+    others = [x for x in rows if x not in unread and isinstance(x, ast.Name)]
+    for one in unread[:_FEW]:
+        for other in others[:_FEW]:
+            yield here.instead(ast.BinOp(one, ast.Mult(), other), "name", 1.08)
+
+
+def _key_of(node: ast.AST) -> str:
+    """The key that a dictionary is asked for; empty of anything else."""
+    key = getattr(node.slice, "value", "") if isinstance(node, ast.Subscript) else ""
+    return key if isinstance(key, str) else ""
 
 
 def _of_idle_numbers_along(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:

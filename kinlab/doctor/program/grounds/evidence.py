@@ -94,6 +94,7 @@ class Grounds:
         self.right: set[int] = set()
         self.partly: set[int] = set()
         self.flags: set[int] = set()
+        self.central: set[int] = set()
         self.values: set[float] = set()
         self.sound: set[int] = set()
         self.trusted: set[int] = set()
@@ -144,6 +145,8 @@ class Grounds:
                 self._of_data[name] = self._against_data(name)
             return self._of_data[name]
         if edit.kind in _SPOILING and id(edit.node) in self.right and not _about_the_other(edit):
+            return _SPOILED
+        if edit.kind in _SPOILING and id(edit.node) in self.central:
             return _SPOILED
         whole = edit.changes[0].holder is not edit.node
         if whole and edit.kind in _WHOLLY and id(edit.node) in self.partly:
@@ -313,6 +316,8 @@ class Grounds:
                 self.shared.add(id(node.value))
             if isinstance(target, ast.Name) and self._is_moment(target.id, node.value, observed):
                 self.right |= {id(node.value)}
+                if re.search(r"[Ii]_?[cCgG]", target.id):  # about the centre, as its name says
+                    self.central |= {id(inner) for inner in nodes(node.value)}
             if good and not isinstance(node.value, ast.Name) and not _of_either_sign(senses):
                 self.right |= {id(inner) for inner in nodes(node)}
             near = self._is_whole(node.value, observed)
