@@ -11,6 +11,7 @@ import numpy as np
 from kinlab.doctor.bytecode.syntax import called, names, nodes
 from kinlab.doctor.program.edits.numbers.data import is_number
 from kinlab.doctor.program.edits.scope.known import Knowledge
+from kinlab.doctor.program.grounds.called import kinds_called
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import Here, places
 from kinlab.doctor.program.trial import Trial
@@ -45,6 +46,9 @@ class Scope(Knowledge):
             pairs = [*zip(self.vectors[one], self.vectors[other], strict=False)]
             return any(all(np.allclose(2 * x, y) for x, y in way) for way in (
                 pairs, [(y, x) for x, y in pairs]))  # fmt: skip
+        if len(digits) > 1 and "" in digits:  # of the one link's centre: lc beside l1
+            bare = one if one.rstrip("0123456789") == one else other
+            digits = set() if kinds_called(bare) == ("centre",) else digits
         if len(digits) > 1 or not all(isinstance(x, float | list | np.ndarray) for x in values):
             return False
         if type(values[0]) is type(values[1]) is float:
