@@ -10,6 +10,7 @@ from kinlab.doctor.bytecode.syntax import called, copied, factors, names, nodes
 from kinlab.doctor.program.edits import chains
 from kinlab.doctor.program.edits.scope.forms import Turned, statement_of, stem_of, summands
 from kinlab.doctor.program.edits.scope.part import Scope
+from kinlab.doctor.program.edits.single.whole import value_of, whole_constant
 from kinlab.doctor.program.observed import Shape
 from kinlab.doctor.program.places import (
     ANGLES,
@@ -275,12 +276,30 @@ def _angle(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     radians = ast.BinOp(node, ast.Mult(), number(pi / 180))
     yield here.instead(radians, "degrees", 1.1)
     own = {ast.unparse(n) for n in nodes(node)}
+    every = _all_angles(node, scope)
+    if every is not None:
+        yield here.instead(every, "argument", _NEXT_ANGLE)
     for text, angle in scope.simple(()):
         if text not in own:
             cost = 1.0 + scope.dear(angle)
             cost = min(cost, _NEXT_ANGLE) if follow(angle, node) else cost
             first, last = (angle, node) if text < ast.unparse(node) else (node, angle)
             yield here.instead(ast.BinOp(first, ast.Add(), last), "argument", cost)
+
+
+def _all_angles(node: ast.expr, scope: Scope) -> ast.expr | None:
+    """The angles of all joints up to one: ``q[0] + q[1] + q[2]`` for ``q[2]``."""
+    own = numbered(node)
+    terms: list[ast.expr] = []
+    if own is not None:
+        known = [f"{own[0]}{k}" for k in range(1, own[1] + 1)]
+        terms = [ast.Name(x, ast.Load()) for x in known if x in scope.shapes]
+    elif isinstance(node, ast.Subscript) and whole_constant(node.slice):
+        at = value_of(node.slice)
+        terms = [ast.Subscript(node.value, number(k), ast.Load()) for k in range(at + 1)]
+    if len(terms) < _THRICE or ast.unparse(terms[-1]) != ast.unparse(node):
+        return None
+    return chains.joined(terms[0], [(ast.Add(), one) for one in terms[1:]])
 
 
 def _signs(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

@@ -11,12 +11,13 @@ import numpy as np
 from kinlab.doctor.bytecode.syntax import called, names, nodes
 from kinlab.doctor.program.edits.numbers.data import is_number
 from kinlab.doctor.program.edits.scope.known import Knowledge
-from kinlab.doctor.program.grounds.called import kinds_called
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import Here, places
 from kinlab.doctor.program.trial import Trial
 
 _SUM = re.compile(r"([A-Za-z]+)(\d+) \+ ([A-Za-z]+)(\d+)")
+_CENTRES = ("lc", "lg", "rc", "ac", "cc")
+"""Names for the distance of the only link's centre."""
 _UNUSED = 0.2
 """What it is likelier that something is missing which is set and used nowhere."""
 
@@ -48,7 +49,7 @@ class Scope(Knowledge):
                 pairs, [(y, x) for x, y in pairs]))  # fmt: skip
         if len(digits) > 1 and "" in digits:  # of the one link's centre: lc beside l1
             bare = one if one.rstrip("0123456789") == one else other
-            digits = set() if kinds_called(bare) == ("centre",) else digits
+            digits = set() if bare.lower() in _CENTRES else digits
         if len(digits) > 1 or not all(isinstance(x, float | list | np.ndarray) for x in values):
             return False
         if type(values[0]) is type(values[1]) is float:
