@@ -199,7 +199,68 @@ def f(q, v, a):
     tau2 = m2*l1*l2*c2*a[0] + m2*l1*l2*s2*v[0]**2 + weight + m2*l2**2*(a[0] + a[1])
     return [tau1, tau2]
 """
+OF_A_CLASS = """
+import numpy as np
+
+class Arm:
+    d = np.array([0.089159, 0, 0, 0.10915, 0.09465, 0.0823])
+    a = np.array([0, -0.425, -0.39225, 0, 0, 0])
+    alpha = np.array([1, 0, 0, 1, -1, 0])*np.pi/2
+
+    def joint(self, i, th):
+        ct, st = np.cos(th), np.sin(th)
+        ca, sa = np.cos(self.alpha[i]), np.sin(self.alpha[i])
+        Rz = np.array([[ct, -st, 0, 0], [st, ct, 0, 0], [0, 0, 1, self.d[i]], [0, 0, 0, 1]])
+        Rx = np.array([[1, 0, 0, self.a[i]], [0, ca, -sa, 0], [0, sa, ca, 0], [0, 0, 0, 1]])
+        return Rz @ Rx
+
+    def forward(self, q):
+        T = np.diag([-1.0, -1.0, 1.0, 1.0])
+        for i in range(6):
+            T = T @ self.joint(i, q[i])
+        return T
+
+ARM = Arm()
+
+def f(q):
+    return ARM.forward(q)
+"""
+GENERATED = """
+import numpy as np
+
+across = lambda r, F: r[0]*F[1] - r[1]*F[0]
+
+def f(q, wrench):
+    F, n = wrench[:2], wrench[5]
+    joints, angle = [np.zeros(2)], 0.0
+    for length, turn in zip([0.5, 0.4, 0.25], q):
+        angle += turn
+        joints.append(joints[-1] + length*np.array([np.cos(angle), np.sin(angle)]))
+    return np.array([across(joints[-1] - joints[i], F) + n for i in range(3)])
+"""
+SHARED = """
+import numpy as np
+
+S, C = np.sin, np.cos
+
+def f(q):
+    L, m = np.array([0.5, 0.4, 0.25]), np.array([3.0, 2.0, 1.0])
+    th, M = np.cumsum(q), np.zeros((3, 3))
+    e = np.stack([-S(th), C(th)])
+    for i in range(3):
+        J = np.zeros((2, 3))
+        for j in range(i + 1):
+            for k in range(j, i + 1):
+                arm = L[k]/2 if k == i else L[k]
+                J[:, j] += arm*e[:, k]
+        w = np.array([1.0 if j <= i else 0.0 for j in range(3)])
+        M += m[i]*J.T @ J + m[i]*L[i]**2/12*np.outer(w, w)
+    return M
+"""
 PROGRAMS = {
+    "class": ("ur5", "fk", OF_A_CLASS),
+    "generated": ("planar3r", "statics", GENERATED),
+    "shared": ("planar3r", "mass_matrix", SHARED),
     "energy": ("stanford", "kinetic_energy", ENERGY),
     "legs": ("isotropic", "fivebar_torque", LEGS),
     "symbols": ("planar3r", "coriolis_matrix", SYMBOLS),
@@ -246,6 +307,10 @@ def test_the_programs_are_right(name) -> None:
         ("sliding", "[0, 0, -90, 0, 0, 0]", "[0, 0, 90, 0, 0, 0]"),
         ("weights", " + M3*G*L2*c12", ""),
         ("rates", "s2*v[0]*v[1]", "s2*v[0]**2"),
+        ("class", "return Rz @ Rx", "return Rx @ Rz"),
+        ("class", "np.diag([-1.0, -1.0, 1.0, 1.0])", "np.eye(4)"),
+        ("generated", "F) + n for", "F) for"),
+        ("shared", "L[k]/2 if k == i else L[k]", "L[k]/2"),
     ],
 )
 def test_one_slip(name, right, wrong) -> None:

@@ -330,7 +330,7 @@ class TriedTogether:
     def _likeliest_threes(self, possible: Any) -> Any:
         """Any three of the very likeliest: what is zero as it is may change with two of them."""
         few = self.sound[:_SOONEST]
-        every = np.array([*combinations(range(len(few)), 3)]).reshape(-1, 3)
+        every = np.array([*combinations(range(len(few)), 3)], dtype=int).reshape(-1, 3)
         every = every[np.argsort((every + 1).prod(axis=1), kind="stable")]
         known = {*map(tuple, np.sort(possible, axis=1).tolist())}
         fresh = [k for k, one in enumerate(few[every].tolist()) if tuple(sorted(one)) not in known]

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
+from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import called, names, nodes
 from kinlab.doctor.program.edits.numbers.data import is_number
 from kinlab.doctor.program.edits.scope.known import Knowledge
@@ -44,9 +45,8 @@ class Scope(Knowledge):
         digits = {name[len(name.rstrip("0123456789")) :] for name in (one, other)}
         values = [self.levels.get(name, self.space.get(name)) for name in (one, other)]
         if digits == {""} and one in self.vectors and other in self.vectors:
-            pairs = [*zip(self.vectors[one], self.vectors[other], strict=False)]
-            return any(all(np.allclose(2 * x, y) for x, y in way) for way in (
-                pairs, [(y, x) for x, y in pairs]))  # fmt: skip
+            rows = [*zip(self.vectors[one], self.vectors[other], strict=False)]
+            return all(map(_is_twice, rows)) or all(_is_twice(row[::-1]) for row in rows)
         if len(digits) > 1 and "" in digits:  # of the one link's centre: lc beside l1
             bare = one if one.rstrip("0123456789") == one else other
             digits = set() if bare.lower() in _CENTRES else digits
@@ -141,6 +141,12 @@ class Scope(Knowledge):
         for text, node in self.pieces_here(shape).items():
             if isinstance(node, ast.Name | ast.Subscript | ast.Attribute):
                 yield text, node
+
+
+def _is_twice(rows: tuple[Array, Array]) -> bool:
+    """Whether the second of two rows is twice the first."""
+    first, second = rows
+    return first.shape == second.shape and bool(np.allclose(2 * first, second))
 
 
 def standing(
