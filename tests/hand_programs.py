@@ -341,6 +341,31 @@ def f(q):
 # -------- A slip, made on tokens
 
 
+BACK = """
+import numpy as np
+from math import cos, pi, sin
+
+def step(alpha, a, t):
+    R = np.array([[cos(t), -sin(t), 0], [sin(t)*cos(alpha), cos(t)*cos(alpha), -sin(alpha)],
+                  [sin(t)*sin(alpha), cos(t)*sin(alpha), cos(alpha)]])
+    return R, np.array([a, 0.0, 0.0])
+
+def f(q, wrench):
+    R1, P1 = step(0, 0, q[0])
+    R2, P2 = step(0, 0.45, q[1])
+    R3, P3 = step(pi/2, 0.35, q[2])
+    to = (R1 @ R2 @ R3).T
+    push, turn = to @ wrench[:3], to @ wrench[3:]
+    n3 = turn + np.cross([0.3, 0, 0], push)
+    f2 = R3 @ push
+    n2 = R3 @ n3 + np.cross(P3, f2)
+    f1 = R2 @ f2
+    n1 = R2 @ n2 + np.cross(P2, f1)
+    return np.array([n1[2], n2[2], n3[2]])
+"""
+"""Statics of spatial3r, from the tool back to the base."""
+
+
 def with_slips(text: str, slips: list[tuple[str, str]]) -> str:
     """A text with other pieces for some that stand in it once."""
     for old, new in slips:

@@ -7,7 +7,7 @@ Every program is right before its slips, which its verdict tells first; what is 
 from __future__ import annotations
 
 import pytest
-from hand_programs import lines_named, repaired, with_slips, written
+from hand_programs import BACK, lines_named, repaired, with_slips, written
 
 import kinlab as kl
 
@@ -46,28 +46,6 @@ def f(q, v, a):
         push = [push[0] + s["F"][0], push[1] + s["F"][1]]
         tau[k] = turning
     return tau
-"""
-BACK = """
-import numpy as np
-from math import cos, pi, sin
-
-def step(alpha, a, t):
-    R = np.array([[cos(t), -sin(t), 0], [sin(t)*cos(alpha), cos(t)*cos(alpha), -sin(alpha)],
-                  [sin(t)*sin(alpha), cos(t)*sin(alpha), cos(alpha)]])
-    return R, np.array([a, 0.0, 0.0])
-
-def f(q, wrench):
-    R1, P1 = step(0, 0, q[0])
-    R2, P2 = step(0, 0.45, q[1])
-    R3, P3 = step(pi/2, 0.35, q[2])
-    to = (R1 @ R2 @ R3).T
-    push, turn = to @ wrench[:3], to @ wrench[3:]
-    n3 = turn + np.cross([0.3, 0, 0], push)
-    f2 = R3 @ push
-    n2 = R3 @ n3 + np.cross(P3, f2)
-    f1 = R2 @ f2
-    n1 = R2 @ n2 + np.cross(P2, f1)
-    return np.array([n1[2], n2[2], n3[2]])
 """
 CHAIN = """
 import numpy as np
