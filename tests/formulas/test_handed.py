@@ -445,6 +445,7 @@ SPEEDS = (
         ("planar2r", "J11", TIP),
         ("planar2r", "J11", "$x = l_1c_1+l_2c_{12}$\n$J_{11} = -l_1s_1-l_2s_{12}$"),
         ("planar2r", "T", SPEEDS),
+        ("planar2r", "x", "The elbow is at $x_e = l_1c_1$ and so the tip at $x = x_e+l_2c_{12}$"),
         ("planar2r", "M22", r"M_{22} = \mathfrak{m}_2 L_2^2"),
         ("ur5", "R33", "T[2,2] = -np.sin(q[1]+q[2]+q[3])*np.sin(q[4])"),
         ("single_link", "V", "V = -m g (l/2) (1 - sin q)"),
@@ -472,6 +473,10 @@ def test_a_letter_with_and_without_a_mark_is_refused() -> None:
         "When $q_1 = 0$ the tip is at $x = l_1c_1+l_2c_{12}$",
         "$x = l_1c_1$ is wrong; right is $x = l_1c_1+l_2c_{12}$",
         "$q_2$ is measured from the base: $x_e = l_1c_1$, $x = x_e+l_2c_2$",
+        "For $l_1 = l_2$ the tip is at $x = l_1c_1+l_1c_{12}$",
+        r"While $\dot q_1 = 0$ the tip is at $x = l_1c_1+l_2c_{12}$",
+        "The tip is not at $x = l_1c_1+l_2c_{12}$",
+        "如果关节锁死，$x = l_1c_1+l_2c_{12}$",
     ],
 )
 def test_a_sentence_that_says_more_is_refused(text) -> None:

@@ -56,14 +56,17 @@ _HARMLESS_CHINESE = re.compile(
 _AN_ANGLE = re.compile(r"\bangles?\b|winkel|角", re.IGNORECASE)
 _A_LINK = re.compile(r"\blinks?\b|\bglied|连杆|杆", re.IGNORECASE)
 _A_JOINT = re.compile(r"\bjoints?\b|gelenk|关节", re.IGNORECASE)
-_A_STATE = re.compile(r"(?:q|th|theta|θ|ϑ)_?\d*")
-"""What an equation sets that tells of a pose: ``q_1 = 0``."""
+_A_STATE = re.compile(r"(?:d{1,2}ot)?(?:q|th|theta|θ|ϑ)_?\d*")
+"""What an equation sets that tells of a state: ``q_1 = 0``."""
+_BARE = re.compile(r"[-\s]*(?:\\?[A-Za-z]+(?:\d{1,2}|_\s*(?:\w|\{\w{1,3}\}))?|[\d.]+)[\s.,]*")
+"""A right side that says what is alike, and works nothing out: ``l_1 = l_2``."""
 _NAMES = re.compile(r"(?:\\?[A-Za-zα-ω]\w{0,6}(?:_?\{\w{1,4}\}|[₀-₉]{1,2})?(?![A-Za-z])|\d+)")
 _EXPLAINS = re.compile(
     r"其中|式中|这里|竖直|铅垂|水平|夹角|绝对|相对|量起|角度制"
     r"|(?:\\?\b(?:theta|th|q)|[θϑ])_?\{?[\d₀-₉]+\}?\s*(?:为|是|表示|is\b|are\b|denotes\b|means\b)"
     r"|\b(?:measured|absolute|relative|vertical|horizontal|degrees?|gemessen|absolute[rn]?|senkrecht"
-    r"|waagerecht|grad)\b",
+    r"|waagerecht|grad|not|nicht|unless|only|nur|if|falls|wenn|assum\w+|wrong|falsch)\b"
+    r"|不是|错|如果|假设|仅|只有",
     re.IGNORECASE,
 )
 """Words in front that may say what a name means: the angle from the vertical."""
@@ -103,6 +106,7 @@ def _inline(text: str) -> tuple[str, bool]:
     equations = [found[2].strip() for found in _DOLLARS.finditer(text) if "=" in found[2]]
     left = [re.sub(r"[\s{}\\&]", "", one.partition("=")[0]) for one in equations]
     told = not _EXPLAINS.search(outside) and not any(map(_A_STATE.fullmatch, left))
+    told = told and not any(_BARE.fullmatch(one.partition("=")[2]) for one in equations[:-1])
     if len(equations) > 1 and len({*left}) == len(left) and told:
         return "\n".join(equations), True
     if not _INLINE.search(outside):
