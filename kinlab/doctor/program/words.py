@@ -481,9 +481,9 @@ def _is_odd(node: ast.AST) -> bool:
 
 def _is_sum_added(node: ast.AST) -> bool:
     """Whether a sum in parentheses is added: ``a + (b + c)``."""
-    added = isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add)
-    last = node.right if added and isinstance(node, ast.BinOp) else None
-    return isinstance(last, ast.BinOp) and isinstance(last.op, ast.Add | ast.Sub)
+    if not isinstance(node, ast.BinOp) or not isinstance(node.op, ast.Add):
+        return False
+    return isinstance(node.right, ast.BinOp) and isinstance(node.right.op, SUMS)
 
 
 def _is_signed_twice(node: ast.AST) -> bool:

@@ -378,9 +378,8 @@ def _squares_and_products(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
 
 
 def _of_one_link(one: str, other: str) -> bool:
-    """Whether two names have one number, as a2 and r2."""
-    digits = [text[len(text.rstrip("0123456789")) :] for text in (one, other)]
-    return digits[0] == digits[1] != "" and one[0] in "aldr" and other[0] in "aldrcx"
+    """Whether two lengths have one number, as a2 and r2."""
+    return any(_stems(one, other)) and one[0] in "aldr" and other[0] in "aldrcx"
 
 
 def _stems(one: str, other: str) -> tuple[str, str]:

@@ -42,10 +42,10 @@ def opposite(node: ast.expr) -> ast.expr:
     if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult | ast.Div):
         first, factors = chain(node, (ast.Mult, ast.Div))
         return joined(ast.UnaryOp(ast.USub(), first), factors)
-    if isinstance(node, ast.IfExp) and ast.unparse(node.orelse) == f"-{ast.unparse(node.body)}":
-        return ast.IfExp(node.test, node.orelse, node.body)
-    if isinstance(node, ast.IfExp) and ast.unparse(node.body) == f"-{ast.unparse(node.orelse)}":
-        return ast.IfExp(node.test, node.orelse, node.body)
+    if isinstance(node, ast.IfExp):
+        one, other = ast.unparse(node.body), ast.unparse(node.orelse)
+        if other == f"-{one}" or one == f"-{other}":
+            return ast.IfExp(node.test, node.orelse, node.body)
     first, terms = chain(node, SUMS)
     taken = [term for op, term in terms if isinstance(op, ast.Sub)]
     if not taken or isinstance(first, ast.UnaryOp):

@@ -89,7 +89,9 @@ def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[Pro
                         every = (*(_unchanged(x, own) for x in every),)
                     if _says_where(here):
                         every = (*(replace(x, cost=max(x.cost, _WRITTEN)) for x in every),)
-                    beside, terms = _rotations_beside(here, observed), _terms_beside(here)
+                    beside = _rotations_beside(here, observed)
+                    added = any(x.kind == "missing term" for x in every)
+                    terms = _terms_beside(here) if added else set()
                     found += [
                         _in_order(x)
                         for x in every

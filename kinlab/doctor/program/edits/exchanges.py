@@ -34,7 +34,7 @@ def of_statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
     names = [text for text in uses if shapes[text] is not None and text not in scope.counters]
     for one, other in combinations(names[:_MOST], 2):
         if shapes[one] == shapes[other] and _go_together(one, other):
-            both = _Renamed({one: uses[other][0], other: uses[one][0]})
+            both = Renamed({one: uses[other][0], other: uses[one][0]})
             cost = 1.08 + 0.02 * (len(uses[one]) + len(uses[other]))
             yield here.within(here.node, "value", both.of(value), "names exchanged", cost)
     calls = (node for node in nodes(value) if isinstance(node, ast.Call))
@@ -43,18 +43,18 @@ def of_statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
         if len(uses[text]) > 1:
             for entry in _entries_beside(uses[text][0]):
                 if ast.unparse(entry) not in uses:
-                    new = _Renamed({text: entry}).of(value)
+                    new = Renamed({text: entry}).of(value)
                     yield here.within(here.node, "value", new, "index", 1.1)
             if all(id(node) in angles for node in uses[text]) and _is_given(here, uses[text][0]):
                 for _other, node in scope.simple(()):
                     if follow(node, uses[text][0]):
                         first, last = sorted((node, uses[text][0]), key=ast.unparse)
                         angle = ast.BinOp(first, ast.Add(), last)
-                        new = _Renamed({text: angle}).of(value)
+                        new = Renamed({text: angle}).of(value)
                         yield here.within(here.node, "value", new, "argument", _ANGLES)
             for other, node in scope.simple(shapes[text] or ()):
                 if other != text and other[0] == text[0] and other not in uses:
-                    new = _Renamed({text: node}).of(value)
+                    new = Renamed({text: node}).of(value)
                     yield here.within(here.node, "value", new, "name", 1.14)
     turns = {called(n) for n in nodes(value) if isinstance(n, ast.Call)} & {"sin", "cos"}
     count = sum(isinstance(n, ast.Call) and called(n) in ANGLES for n in nodes(value))
@@ -129,7 +129,7 @@ def of_row(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit
             else:
                 like, cost = _owner(new) == _owner(node), 1.06
             if like:
-                put = [_Renamed({text: new}).of(one) for one in here.node.elts]
+                put = [Renamed({text: new}).of(one) for one in here.node.elts]
                 yield here.within(here.node, "elts", put, "name", cost)
 
 
@@ -171,7 +171,7 @@ def _plain(node: ast.Name | ast.Subscript) -> bool:
     return isinstance(node.value, ast.Name) and isinstance(node.slice, ast.Constant)
 
 
-class _Renamed(ast.NodeTransformer):
+class Renamed(ast.NodeTransformer):
     """Other expressions for names and entries, by what they are as text."""
 
     def __init__(self, others: dict[str, ast.expr]) -> None:

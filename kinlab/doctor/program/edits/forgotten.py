@@ -9,7 +9,8 @@ from itertools import combinations, permutations
 
 from kinlab.doctor.bytecode.syntax import called, copied, factors, names, nodes
 from kinlab.doctor.program.edits.additions import OtherAxis, summed
-from kinlab.doctor.program.edits.scope.forms import Turned, summands
+from kinlab.doctor.program.edits.exchanges import Renamed
+from kinlab.doctor.program.edits.scope.forms import Turned, named, summands
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.entries import keys_of
 from kinlab.doctor.program.edits.single.whole import whole_constant
@@ -232,7 +233,8 @@ def _with_indices_exchanged(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     if len(terms) != _BOTH or len(own) != _INDICES or not alike:
         return
     for order in permutations(own):
-        new = _Exchanged(dict(zip(own, order, strict=True))).visit(copied(terms[0]))
+        others: dict[str, ast.expr] = dict(zip(own, map(named, order), strict=True))
+        new = Renamed(others).of(terms[0])
         if ast.unparse(new) not in known:
             for op, cost in ((ast.Sub(), 1.04), (ast.Add(), 1.06)):
                 yield here.instead(ast.BinOp(here.node, op, new), "missing term", cost)
@@ -254,16 +256,6 @@ def _half_of_its_own(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
 
 def _counted(term: ast.expr, counters: Sequence[str]) -> list[str]:
     return [name for name in names(term) if name in counters]
-
-
-class _Exchanged(ast.NodeTransformer):
-    """Names for one another."""
-
-    def __init__(self, others: dict[str, str]) -> None:
-        self.others = others
-
-    def visit_Name(self, node: ast.Name) -> ast.Name:
-        return ast.Name(self.others.get(node.id, node.id), node.ctx)
 
 
 def _of_the_point(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

@@ -529,17 +529,21 @@ def _factor(edit: ProgramEdit) -> float:
     """The number by which an edit multiplies; 0 where it does something else."""
     new, old = edit.changes[0].new, 1.0
     if isinstance(new, ast.BinOp) and isinstance(new.op, ast.Div):  # ``a/(2*b)``
-        below = new.right
-        while isinstance(below, ast.BinOp):
-            below = below.left
-        new, old = 1.0, getattr(below, "value", 0.0)
-    elif isinstance(new, ast.BinOp):
-        while isinstance(new, ast.BinOp):  # ``0.5*w @ I @ w``
-            new = new.left
-        new = getattr(new, "value", None)
-    elif isinstance(edit.node, ast.Constant) and isinstance(edit.node.value, int | float):
+        below = _in_front(new.right)
+        return 1.0 / below if below else 0.0
+    if isinstance(new, ast.BinOp):
+        return _in_front(new)
+    if isinstance(edit.node, ast.Constant) and isinstance(edit.node.value, int | float):
         old = float(edit.node.value)
     return float(new) / old if isinstance(new, int | float) and old else 0.0
+
+
+def _in_front(node: ast.expr) -> float:
+    """The number that an expression begins with, 0.5 of ``0.5*w @ I @ w``; 0 without one."""
+    while isinstance(node, ast.BinOp):
+        node = node.left
+    value = node.value if isinstance(node, ast.Constant) else 0.0
+    return float(value) if isinstance(value, int | float) else 0.0
 
 
 def _is_rotation(value: Array) -> bool:

@@ -161,14 +161,14 @@ def other_arm(
     ways: list[tuple[ProgramEdit, ...]] = []
     put: list[tuple[NumberPlace, float]] = []
     for chosen in islice(product(*(factors for _some, factors in choices.values())), _WAYS + 1):
-        changed_ = [
+        moved = [
             one.times(factor)
             for (some_, _factors), factor in zip(choices.values(), chosen, strict=True)
             for one in some_
             if factor != 1.0
         ]
-        put = put or changed_
-        ways += [tuple(together(changed_))] if changed_ else []
+        put = put or moved
+        ways += [tuple(together(moved))] if moved else []
     if not ways:
         return None
     larger = _scaled(table, twisted)

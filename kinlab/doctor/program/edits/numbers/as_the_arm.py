@@ -89,8 +89,8 @@ def _base_set(trial: Trial, observed: Observed, table: DHTable) -> Iterator[Prog
     if np.array_equal(base, np.eye(4)):
         return
     if np.array_equal(base @ base, np.eye(4)):  # its inverse, and it stays as it is typed
+        given = {one.arg for one in trial.trees[0].args.args}
         for here in places(0, trial.trees[0]):
-            given = [one.arg for one in trial.trees[0].args.args]
             named = isinstance(here.node, ast.Name) and here.node.id in given
             if named and observed.shape(here.node) == (4, 4):
                 product = ast.BinOp(_written(base), ast.MatMult(), here.node)

@@ -92,15 +92,9 @@ class Knowledge:
         self._put_idle(trial, part)
         self._put_all(pieces.unit_matrices(self.pieces) if self.has_numpy else ())
         self._put_all(pieces.counted(self.lists, self.counters))
-        unread = [name for name in self.lists if name not in self.read_as_lists(tree)]
+        read = pieces.read_from(tree)
+        unread = [name for name in self.lists if name not in read]
         self._put_all(pieces.of_the_next(self.pieces, self.lists, unread))
-
-    @staticmethod
-    def read_as_lists(tree: ast.AST) -> set[str]:
-        """The names of lists of which an entry is read."""
-        every = (node for node in nodes(tree) if isinstance(node, ast.Subscript))
-        loads = [one for one in every if isinstance(one.ctx, ast.Load)]
-        return {one.value.id for one in loads if isinstance(one.value, ast.Name)}
 
     def _ask_for_functions(self, trial: Trial, tree: ast.AST) -> None:
         """What the part may call: the program's functions, and others."""

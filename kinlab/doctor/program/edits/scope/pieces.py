@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Mapping, Sequence
 
-from kinlab.doctor.bytecode.syntax import copied
+from kinlab.doctor.bytecode.syntax import copied, nodes
 from kinlab.doctor.program.edits.scope.forms import entry, named
 from kinlab.doctor.program.observed import Observed, Shape
 
@@ -51,6 +51,13 @@ def counted(lists: Mapping[str, Shape], counters: Sequence[str]) -> Iterator[Siz
     for name, shape in lists.items():
         for counter in counters:
             yield shape, entry(named(name), named(counter))
+
+
+def read_from(tree: ast.AST) -> set[str]:
+    """The names of lists of which an entry is read."""
+    every = (node for node in nodes(tree) if isinstance(node, ast.Subscript))
+    loads = [one for one in every if isinstance(one.ctx, ast.Load)]
+    return {one.value.id for one in loads if isinstance(one.value, ast.Name)}
 
 
 def of_the_next(

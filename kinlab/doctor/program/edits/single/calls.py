@@ -113,9 +113,8 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
                 continue
             swapped = [*plain]
             swapped[i], swapped[j] = swapped[j], swapped[i]
-            led = scope.crosses(node) and isinstance(plain[1], ast.BinOp)
-            led = led and isinstance(getattr(plain[1], "op", None), ast.Sub)
-            if led and not isinstance(plain[0], ast.BinOp):  # z x (p - o) for z x (o - p)
+            less = isinstance(getattr(plain[1], "op", None), ast.Sub)
+            if less and scope.crosses(node) and not isinstance(plain[0], ast.BinOp):
                 turned = [plain[0], chains.opposite(plain[1])]
                 yield here.within(node, "args", turned, "sign", _LED)
             cost = 1.02 if scope.crosses(node) else 1.05 if name in _ORDERED else 1.15
