@@ -98,7 +98,8 @@ class Diagnosis(Answer):
         form: how a right formula is right: ``""`` (as the engine has it), ``"rounded"`` (with
             rounded numbers), ``"unusual"`` (another valid one) or ``"digits"`` (to so many digits
             that no slip is known to be so small). Of a formula that nothing explains ``"near"``:
-            so close that rounded constants may be all that is wrong with it.
+            so close that rounded constants may be all that is wrong with it; ``"words"`` where
+            words beside it may mean that it claims something else, so that it is not judged.
         remarks: what is to be said of a right formula: which numbers are rounded, for which robot
             alone it holds, in what it is unusual.
         proved: of a formula that nothing explains, what of it is right all the same: kinds of term
@@ -162,6 +163,8 @@ class Diagnosis(Answer):
             return _VERDICTS[self.form]
         if self.form == "near":
             return N_("nearly agrees, cause unknown")
+        if self.form == "words":
+            return N_("not judged")
         return N_("differs") if self.causes else N_("differs, cause unknown")
 
     @property
@@ -169,7 +172,7 @@ class Diagnosis(Answer):
         """As a teacher says it: ``"right"``, ``"right with rounded numbers"``, ``"right but written
         unusually"`` or ``"wrong"``.
         """
-        if self.form == "near":
+        if self.form in ("near", "words"):
             return N_("not sure")
         return _GRADES[self.form] if self.agrees else N_("wrong")
 
@@ -181,6 +184,8 @@ class Diagnosis(Answer):
             return _("; ").join((said, *self.remarks))
         if self.causes:
             return self.causes[0].sentence
+        if self.form == "words":
+            return self.remarks[0]
         if self.form == "near":
             said = _(
                 "{function} is {quantity} of {robot} to {digits} digits only: rounded constants, "

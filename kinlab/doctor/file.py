@@ -82,7 +82,20 @@ def examine_file(path: str | Path, samples: int = 200, seed: int = 0) -> list[Di
     for _key, problem in lines.problems:
         raise problem
     file = formula_file(lines.document, str(path))
-    return examine_formulas(file, robot_of(file), samples, seed)
+    found = examine_formulas(file, robot_of(file), samples, seed)
+    refuse_unjudged(found)
+    return found
+
+
+def refuse_unjudged(found: Iterable[Diagnosis]) -> None:
+    """Refuses what was not judged for the words beside it.
+
+    Raises:
+        ExpressionError: with these words.
+    """
+    for one in found:
+        if one.form == "words":
+            raise ExpressionError(one.sentence)
 
 
 def examine_formulas(
@@ -105,7 +118,20 @@ def examine_formulas(
     parts = [_examined(part, robot, samples, seed) for part in (file, *file.others)]
     alike = [part for part in parts if len(part) == len(parts[0])]
     told = [_of_chain(list(same)) for same in zip(*alike, strict=True)]
-    return [_with_remarks(one, file.remarks) for one in told] if file.remarks else told
+    told = [_with_remarks(one, file.remarks) for one in told] if file.remarks else told
+    return [_judged_with(one, file.unread) for one in told] if file.unread else told
+
+
+def _judged_with(found: Diagnosis, unread: Mapping[str, str]) -> Diagnosis:
+    """A diagnosis of a formula with words that were not read: right, or not judged."""
+    words = next((unread[one] for one in found.function.split(", ") if one in unread), "")
+    if found.agrees or not words:
+        return found
+    said = _(
+        "{entry}: not judged. The words {words!r} beside the formula were not read and may say "
+        "when it holds or of what it is; leave them out if it is meant for every state"
+    ).format(entry=found.title, words=words)
+    return replace(found, causes=(), partial=(), proved=(), form="words", remarks=(said,))
 
 
 def as_judged(file: FormulaFile, robot: Mechanism) -> FormulaFile:

@@ -22,7 +22,14 @@ from kinlab.check.unread import Unread
 from kinlab.doctor.changes import Mechanism, label_of
 from kinlab.doctor.derived import derivation
 from kinlab.doctor.examine import examine, prepare, real
-from kinlab.doctor.file import as_judged, examine_formulas, require_sound, robot_of, twice
+from kinlab.doctor.file import (
+    as_judged,
+    examine_formulas,
+    refuse_unjudged,
+    require_sound,
+    robot_of,
+    twice,
+)
 from kinlab.doctor.linkages.as_right import times
 from kinlab.doctor.linkages.mechanisms import mechanism
 from kinlab.doctor.program.elsewhere import lines_elsewhere
@@ -75,6 +82,7 @@ def diagnose(
         arm = mechanism(robot)
         file = formula_file({"robot": arm.name, "formulas": {quantity: function}}, "formula")
         judged = examine_formulas(file, arm, whole(samples, "samples", FEWEST), seed_of(seed))
+        refuse_unjudged(judged)
         wrong = [one for one in judged if not one.agrees]
         return _of_all(wrong) if wrong else judged[0]
     need_function(function)
@@ -179,7 +187,7 @@ def _of_sound(
     document: Mapping[str, Any], path: str, samples: int, seed: int
 ) -> tuple[list[Diagnosis], list[Unread]]:
     try:
-        return of_file(formula_file(document, path), samples, seed), []
+        return _judged(of_file(formula_file(document, path), samples, seed), path)
     except KinlabError as problem:
         lost = Unread(path, problem)
     bad = []
@@ -204,9 +212,17 @@ def _of_sound(
     if not bad or not entries_of(left):
         return [], bad if len(bad) > 1 else [lost]
     try:
-        return of_file(formula_file(left, path), samples, seed), bad
+        judged, more = _judged(of_file(formula_file(left, path), samples, seed), path)
+        return judged, [*bad, *more]
     except KinlabError as problem:
         return [], [*bad, Unread(path, problem)]
+
+
+def _judged(found: list[Diagnosis], path: str) -> tuple[list[Diagnosis], list[Unread]]:
+    """What was judged, and what was not for the words beside it."""
+    unread = [one for one in found if one.form == "words"]
+    lost = [Unread(f"{path}: {one.function}", ExpressionError(one.sentence)) for one in unread]
+    return [one for one in found if one.form != "words"], lost
 
 
 def of_task(task: PlannedRow, samples: int = 200, seed: int = 0) -> Row | Diagnosis:

@@ -30,6 +30,7 @@ from typing import Any
 from kinlab.errors import ExpressionError, FileError
 from kinlab.formulas import grids, tree, typed
 from kinlab.formulas.handed.equations import solved
+from kinlab.formulas.handed.prose import left_over
 from kinlab.formulas.handed.reading import as_formula
 from kinlab.formulas.signs.latex import LAMBDA
 from kinlab.formulas.signs.letters import WIDE
@@ -57,6 +58,7 @@ class FormulaFile:
         symbol_texts: the same for symbols; a number as its digits.
         others: the file with another part of a chain of equalities for an entry's formula.
         remarks: what is to be said of how an entry was read.
+        unread: words beside an entry's formula that may change what it claims.
     """
 
     path: str
@@ -70,6 +72,7 @@ class FormulaFile:
     numbers: Mapping[str, str] = field(default_factory=dict)
     others: tuple[FormulaFile, ...] = ()
     remarks: Mapping[str, str] = field(default_factory=dict)
+    unread: Mapping[str, str] = field(default_factory=dict)
 
 
 def formula_file(
@@ -123,13 +126,15 @@ def formula_file(
         if len(found) > _FORMULAS:
             raise FileError(f"{place}: {len(found)} {what}; at most {_FORMULAS}")
     remarks: dict[str, str] = {}
+    doubts: dict[str, list[tuple[str, str]]] = {}
     for key, value in list(entries.items()):
         at = f"{place}: {key}"
-        entries[key], remarks[key] = as_formula(_text(value, at), key, at)
+        entries[key], remarks[key], doubts[key] = as_formula(_text(value, at), key, at)
         parts = typed.several(entries[key], key)
         if parts and not parts.keys() & entries.keys():
             del entries[key]
             entries |= parts
+            doubts |= dict.fromkeys(parts, doubts[key])
     for key, value in entries.items():
         own, entries[key] = typed.explained(_text(value, f"{place}: {key}"), key)
         used = _SIGNS.sub("", " ".join([*own.values(), entries[key]]))
@@ -148,7 +153,13 @@ def formula_file(
     read = partial(_read, place, robot, symbols, writing)
     others = (read({**entries, key: part}) for key, parts in chains.items() for part in parts[1:])
     remarks = {key: remark for key, remark in remarks.items() if remark}
-    return replace(read(entries), others=tuple(others), remarks=remarks)
+    file = read(entries)
+    names = {*file.symbols}.union(
+        *map(tree.names, [*file.formulas.values(), *file.symbols.values()])
+    )
+    unread = {key: left_over(said, names) for key, said in doubts.items() if key in file.formulas}
+    unread = {key: words for key, words in unread.items() if words}
+    return replace(file, others=tuple(others), remarks=remarks, unread=unread)
 
 
 _SIGNS = re.compile(r"[_{}\\\s]")

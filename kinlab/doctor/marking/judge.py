@@ -15,7 +15,7 @@ from kinlab.check.quantities.registry import split_name
 from kinlab.doctor.changes import Mechanism, label_of
 from kinlab.doctor.derivations.words import together
 from kinlab.doctor.examine import examine, prepare
-from kinlab.doctor.file import as_judged, examine_formulas
+from kinlab.doctor.file import as_judged, examine_formulas, refuse_unjudged
 from kinlab.doctor.linkages import five_bar
 from kinlab.doctor.linkages.named_numbers import named_numbers
 from kinlab.doctor.marking.marks import (
@@ -177,6 +177,7 @@ def _of_diagnoses(
     if not asked:
         said = _("{question}: none of the formulas is {entry}")
         raise ExpressionError(said.format(question=question.id, entry=question.entry))
+    refuse_unjudged(asked)
     whole = "[" not in question.quantity
     if whole and any("[" in one.quantity for one in asked) and not _all_given(asked, robot):
         return _in_part(question, asked, file, robot)

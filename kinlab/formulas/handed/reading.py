@@ -9,6 +9,7 @@ from kinlab.formulas.handed.columns import of_column
 from kinlab.formulas.handed.constants import without_constant
 from kinlab.formulas.handed.dressed import undressed
 from kinlab.formulas.handed.letters import plain_letters, without_marks
+from kinlab.formulas.handed.prose import doubtful
 from kinlab.formulas.handed.rates import plain_rates
 from kinlab.formulas.handed.units import without_units
 from kinlab.formulas.handed.words import without_words
@@ -20,7 +21,7 @@ _ALONE = re.compile(
 _GAP = re.compile(r"\s{12,}")
 
 
-def as_formula(text: str, entry: str, place: str) -> tuple[str, str]:
+def as_formula(text: str, entry: str, place: str) -> tuple[str, str, list[tuple[str, str]]]:
     """The formula in what was handed in, as :mod:`kinlab.formulas.typed` reads it.
 
     Args:
@@ -29,17 +30,19 @@ def as_formula(text: str, entry: str, place: str) -> tuple[str, str]:
         place: what to put in front of a message.
 
     Returns:
-        The formula, nothing changed in it where nothing is around it; and what is to be said of
-        how it was read, or nothing.
+        The formula, nothing changed in it where nothing is around it; what is to be said of how it
+        was read, or nothing; and the words left out that may change what it claims, as
+        :func:`kinlab.formulas.handed.prose.doubtful` has them.
 
     Raises:
         ExpressionError: what can be read in two ways.
     """
     text = _GAP.sub(lambda gap: "\n" if "\n" in gap[0] else " ", plain_letters(text, place))
+    doubts = doubtful(text, entry)
     text, marks = without_marks(text)
     text = without_code(text, bool(_ALONE.fullmatch(entry)))
     text = undressed(text, entry)
     text = without_words(text, entry, place)
     text = plain_rates(text)
     text, said = without_constant(without_units(text, entry, place), entry)
-    return of_column(text, entry, place), "; ".join(filter(None, (marks, said)))
+    return of_column(text, entry, place), "; ".join(filter(None, (marks, said))), doubts

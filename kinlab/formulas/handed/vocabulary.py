@@ -1,0 +1,54 @@
+"""Words that say nothing of what a formula claims: ``by the chain rule we find that``.
+
+They stand in ``vocabulary.toml``. A word in no list there may change what is claimed: *upright*,
+*massless*, *elbow*.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from functools import cache
+from importlib import resources
+from typing import Any
+
+BEHIND = "behind"
+"""In an entry's place: what is said of the names in a formula."""
+
+
+def says_nothing(word: str, entry: str) -> bool:
+    """Whether a word of a Latin script is only how people introduce a formula of this entry.
+
+    Args:
+        word: as typed.
+        entry: what the formula is asked for.
+    """
+    plain = word.lower().replace("’", "'").strip(".'-")
+    told = _known(entry, "words")
+    return all(one in told for one in (*plain.split("-"),)) or plain in told
+
+
+def chinese_left(text: str, entry: str) -> str:
+    """What of a run of Chinese is in no list; empty where all is."""
+    told = _known(entry, "chinese")
+    reach = [0]
+    for end in range(1, len(text) + 1):
+        if any(text[start:end] in told for start in reach):
+            reach.append(end)
+    return text[reach[-1] :]
+
+
+@cache
+def _lists() -> dict[str, Any]:
+    text = (resources.files(__package__) / "vocabulary.toml").read_text(encoding="utf-8")
+    return tomllib.loads(text)
+
+
+@cache
+def _known(entry: str, script: str) -> frozenset[str]:
+    """The words that say nothing beside an entry, of one script."""
+    anywhere = _lists()["anywhere"]
+    lists = [anywhere[key] for key in anywhere if (key == "chinese") == (script == "chinese")]
+    of_entry = [one for one in _lists()["of"] if re.match(rf"(?:{one['entries']})(?![a-z])", entry)]
+    of_entry += [_lists()["behind"]] if entry == BEHIND else []
+    return frozenset(" ".join([*lists, *(one[script] for one in of_entry)]).split())
