@@ -493,7 +493,9 @@ def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
         entry's name, the one without a name, the one in front of ``where``, or the last one.
     """
     lines = _equations(text)
-    lines.sort(key=lambda line: (_begins_with(line, entry), "=" not in line))
+    lines.sort(key=lambda line: (begins_with(line, entry), "=" not in line))
+    if not begins_with(lines[-1], entry) and "=" in lines[-1]:
+        lines.sort(key=lambda line: not _explains_another(line, lines))
     own = [line.partition("=") for line in lines[:-1]]
     if not own or any(line.count("=") != 1 for line in lines[:-1]):
         return {}, text
@@ -505,6 +507,13 @@ def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
     dollars = "$" if is_latex(text) else ""
     formulas = {_own_name(name): f"{dollars}{bare(right)}{dollars}" for name, _sign, right in own}
     return formulas, f"{dollars}{lines[-1]}{dollars}"
+
+
+def _explains_another(line: str, lines: list[str]) -> bool:
+    """Whether a line gives a name that another line uses."""
+    name, *others = (re.sub(r"[_{}\\\s]", "", one) for one in (line.partition("=")[0], *lines))
+    pattern = re.compile(rf"(?<![A-Za-z]){re.escape(name)}(?!\d)")
+    return any(pattern.search(other.partition("=")[2]) for other in others)
 
 
 _SQUARE = re.compile(r"(.*?)\s*(?:(?:\^|\*\*)\s*(?:2|\{\s*2\s*\})|²)")
@@ -602,7 +611,7 @@ def readings(text: str, entry: str) -> list[str]:
         return [text]
     names = [part for part in parts if is_name(part)]
     formulas = [part for part in parts if part not in names] or parts[-1:]
-    left = next((name for name in names if _begins_with(f"{name} =", entry)), "")
+    left = next((name for name in names if begins_with(f"{name} =", entry)), "")
     strange = any(name != left and not _also(name, entry) for name in names)
     several = any(len(parts_at(formula, ",")) > 1 for formula in formulas)
     alone = len(parts) == 2 and (names or not _is_formula(parts[0]))
@@ -650,7 +659,7 @@ def _also(name: str, entry: str) -> bool:
 
 def turned(left: str, right: str, entry: str) -> bool:
     """Whether the entry's own name stands behind the sign of equality, and no name before it."""
-    return bool(left) and _begins_with(f"{right.strip('$ ')} =", entry) and not is_name(left)
+    return bool(left) and begins_with(f"{right.strip('$ ')} =", entry) and not is_name(left)
 
 
 def claims(text: str, entry: str = "", writing: Hand | None = None) -> str:
@@ -676,7 +685,7 @@ def named_in(text: str) -> list[str]:
     return [name for name in found if name and _OWN_NAME.fullmatch(re.sub(r"[()\[\],]", "", name))]
 
 
-def _begins_with(line: str, entry: str) -> bool:
+def begins_with(line: str, entry: str) -> bool:
     """Whether a line gives the entry by its own name."""
     left, sign, _right = line.partition("=")
     if not sign or not entry:
@@ -685,8 +694,11 @@ def _begins_with(line: str, entry: str) -> bool:
         own, asked = _head_and_places(entry_name(left)), _head_and_places(entry_name(entry))
     except ExpressionError:
         return False
-    return own == asked or (
-        asked[0] in _POSES and _POINT.get("".join(own).replace("_", "")) == asked[1]
+    rotation = {own[0], asked[0]} <= {*_POSES, "r"} and own[1] == asked[1]
+    return (
+        own == asked
+        or (rotation and bool(_ROTATION.fullmatch(own[1])))
+        or (asked[0] in _POSES and _POINT.get("".join(own).replace("_", "")) == asked[1])
     )
 
 
@@ -778,6 +790,8 @@ _IN_BOOKS = (
 """What books call the same thing: Spong's d11 and phi1, Craig's V, Siciliano's B."""
 _MEANT = tuple({word.lower() for word in group.split()} for group in _IN_BOOKS)
 _POSES = {"t", "a", "h", "fk"}
+_ROTATION = re.compile(r"[123]{2}")
+"""The places of a rotation, alone or in a transform: r11 is T11."""
 _POINT = {"x": "14", "y": "24", "z": "34", "px": "14", "py": "24", "pz": "34"}
 """Which entries of a pose the coordinates of its point are."""
 _ONE_NUMBER = {*"VPUTKL", "Ep", "Ek"}

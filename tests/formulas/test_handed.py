@@ -195,7 +195,71 @@ def test_words_that_may_change_a_meaning_are_refused(text):
 
 def test_the_refused_words_are_said_with_the_remedy():
     text = f"x = {X}, where q1 is measured from the vertical"
-    refused("planar2r", "x", text, r"measured from the vertical.*name = formula")
+    refused("planar2r", "x", text, r"measured from the vertical.*leave it out")
+
+
+SHOWN = "of what it is"
+SENTENCES = [
+    f"Differentiating and collecting terms, we find x = {X}. Done.", f"Q3b) So we get: x = {X}", rf"(c) Hence ${LATEX}$",
+    f"By the law of cosines and the addition theorem x = {X}, which is the x coordinate of the tool.",
+    "With h = l2*c12 the x coordinate is x = l1*c1 + h, in metres", f"x = {X}; it vanishes for q1 = pi/2 and q2 = 0",
+    r"Let $h = l_2 c_{12}$ \text{ and therefore } $x = l_1 c_1 + h$", f"Using cos(a) = cos(-a) we get x = {X}",
+    "Therefore\n\\begin{align}\nx &= l_1 c_1 \\\\\n &\\quad + l_2 c_{12}\n\\end{align}", f"x = {X} (since q1 turns both links)",
+    f"由几何关系可得：x = {X}。", rf"代入化简后，末端横坐标为 $x = {LATEX}$，单位为米", f"Somit folgt für den Endeffektor x = {X}, sie hängt von beiden Winkeln ab.",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("text", SENTENCES)
+def test_a_formula_in_sentences_is_read(text):
+    right("planar2r", "x", text)
+
+
+@pytest.mark.parametrize("text", SENTENCES[:5])
+def test_a_slip_in_sentences_is_told(text):
+    found = kl.diagnose("planar2r", "x", text.replace("c12", "s12").replace("c_{12}", "s_{12}"))
+    assert found.known and "s" in found.sentence
+
+
+@pytest.mark.parametrize(
+    ("entry", "text"),
+    [
+        ("x", "At the upright pose $x = l_1$"), ("x", "In the stretched pose: x = l1 + l2"), ("x", "x = l1*c1  # of the elbow"),
+        ("x", "The elbow has $x = l_1\\cos q_1$"), ("x", "x coordinate of joint 2: x = l1*c1"), ("x", "x_elbow = l1*c1"),
+        ("x", r"x = l_1 + l_2 \quad \text{for the stretched arm}"), ("x", "With small angles we get $x = l_1 + l_2$"),
+        ("x", "x = l1 + l2, stretched out"), ("x", "We look at the stretched arm.\nx = l1 + l2"),
+        ("tau2", f"neglecting the motion, tau2 = {G2}"), ("tau2", f"static torque tau2 = {G2}"), ("tau2", f"The gravity term is tau2 = {G2}"),
+        ("tau1", f"Torque at joint 2: tau1 = {G2}"), ("V", "Potential energy of link 1: V = m1*g*l1*s1"), ("V", "potential energy per unit mass V = g*l1*s1"),
+        ("x", "当机械臂伸直时 x = l1 + l2"), ("x", "肘部的坐标 x = l1*cos(q1)"), ("x", "In Streckstellung gilt $x = l_1 + l_2$"),
+        ("x", "x = l1 + l2; it holds for q1 = 0"), ("g2", f"对于连杆1: g2 = {G2}*2"),
+    ],
+)  # fmt: skip
+def test_what_words_may_condition_is_not_judged(entry, text):
+    refused("planar2r", entry, text, SHOWN)
+
+
+def test_such_words_beside_a_right_formula_do_no_harm():
+    right("planar2r", "x", f"Whatever the pose of the elbow may be: x = {X}")
+
+
+def test_the_words_that_were_not_read_are_said_and_cost_one_entry_alone():
+    from kinlab.doctor.report import of_document
+
+    given = {"robot": "planar2r", "formulas": {"x": "stretched: x = l1 + l2", "y": "l1*s1 + l2*s12"}}
+    judged, unread = of_document(given, "f.toml")
+    assert [one.function for one in judged] == ["y"] and judged[0].agrees
+    assert [one.what for one in unread] == ["f.toml: x"] and "'stretched'" in unread[0].reason
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"g2 = {G2} - offset", f"Then g2 = {G2} + friction", f"We get g2 = {G2} (friction)", f"g2 = {G2} friction",
+        f"g2 = {G2} and friction", f"We find g2 = {G2}, plus friction", f"g2 = {G2} times two", f"hence g2 = {G2}, without the tool",
+        f"g2 = {G2}，再加摩擦", "hence g2 = m2*g*l2*cos(angle)", f"g2 = {G2} in mm", "x = l1 - l2 (folded)",
+    ],
+)  # fmt: skip
+def test_a_word_that_may_be_part_of_the_formula_is_not_left_out(text):
+    refused("planar2r", "g2", text)
 
 
 # -------- Code
@@ -419,7 +483,7 @@ def test_long_texts_are_read_soon():
 )
 def test_words_in_front_that_say_what_a_name_means_are_no_dress(words: str) -> None:
     """A right formula of other angles would be called wrong, and nothing said of the words."""
-    with pytest.raises(ExpressionError, match="in front of the formula"):
+    with pytest.raises(ExpressionError, match="beside the formula"):
         kl.diagnose("planar2r", "x", f"{words}x = l1*c1 + l2*c2")
 
 

@@ -9,31 +9,33 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from kinlab.formulas.handed.vocabulary import BEHIND, chinese_left, says_nothing
+from kinlab.formulas.handed.vocabulary import BEHIND, CHINESE, LATIN, chinese_left, says_nothing
 
-_CHINESE = "\u4e00-\u9fff"
-_LATIN = r"A-Za-zÄÖÜäöüßéè"
 _FONT = re.compile(r"\\(?:text|textrm|textit|textbf|mbox|textnormal|mathrm|rm|hbox)\s*\{([^{}]*)\}")
-_BELOW = re.compile(rf"_\s*(?:\{{[^{{}}]*(?:\{{[^{{}}]*\}})?[^{{}}]*\}}|[{_LATIN}]+|\w)")
+_BELOW = re.compile(rf"_\s*(?:\{{[^{{}}]*(?:\{{[^{{}}]*\}})?[^{{}}]*\}}|[{LATIN}]+|\w)")
 _AROUND = re.compile(r"\\(?:begin|end|label|tag|ref|color|textcolor|operatorname)\*?\s*\{[^{}]*\}")
 _COMMAND = re.compile(r"\\(?:[A-Za-z]+\*?|.)")
-_MATHS = re.compile(r"\$\$[^$]*\$\$|\$[^$]*\$|\\\(.*?\\\)|\\\[.*?\\\]", re.DOTALL)
+MATHS = re.compile(r"\$\$[^$]*\$\$|\$[^$]*\$|\\\(.*?\\\)|\\\[.*?\\\]", re.DOTALL)
+"""Formulas in LaTeX between signs that say so."""
 _WHERE = re.compile(
-    r"\b(?:where|in which|with|wobei|mit|dabei|hierbei|here)\b|其中|式中|这里", re.IGNORECASE
+    r"\b(?:where|in which|(?:with|mit)(?!\s+(?:respect|bezug))|wobei|dabei|hierbei|here)\b"
+    r"|其中|式中|这里",
+    re.IGNORECASE,
 )
 
 
 def _words(least: int) -> re.Pattern[str]:
-    beside = rf"(?<![\w.{{\[*/^+])(?P<latin>[{_LATIN}]{{{least},}}(?:['’-][{_LATIN}]{{2,}})*)"
+    beside = rf"(?<![\w.{{\[*/^+])(?P<latin>[{LATIN}]{{{least},}}(?:['’-][{LATIN}]{{2,}})*)"
     latin = rf"{beside}(?![\w(\[*/^+]|\s*&?\s*:?=)"
-    return re.compile(rf"{latin}|(?P<chinese>[{_CHINESE}]+)")
+    return re.compile(rf"{latin}|(?P<chinese>[{CHINESE}]+)")
 
 
 _WORDS = {typeset: _words(least) for typeset, least in ((False, 2), (True, 4))}
 """In LaTeX a few letters side by side are a product."""
-_PHRASE = re.compile(rf"[{_LATIN}{_CHINESE}\d'’ ,.;:-]*")
+_PHRASE = re.compile(rf"[{LATIN}{CHINESE}\d'’ ,.;:-]*")
 _FRAME = re.compile(
-    r"\bpart \(?[a-h1-9]\b|\b(?:base|world|inertial|fixed|reference)[ -](?:frame|system|coordinates?)\b"
+    r"\bpart \(?[a-h1-9]\b"
+    r"|\b(?:base|world|inertial|fixed|reference)[ -](?:frame|system|coordinates?)\b"
     r"|\b(?:basis|welt|inertial)(?:koordinaten)?system\b|基坐标系|世界坐标系|固定坐标系",
     re.IGNORECASE,
 )
@@ -47,6 +49,18 @@ _PART = re.compile(
     re.IGNORECASE,
 )
 _MOST = 60
+_CONDITION = re.compile(
+    r"(?<![\w*/+-])(?:(?:theta|vartheta|θ|ϑ|th|q)[d']{0,2}[1-9₁-₉]?\s*=\s*(?:[-±]?\s*(?:\d|π|pi\b))"
+    r"|(?P<letter>[lLmI])[1-9]\s*=\s*(?P=letter)[1-9](?![\w*/+-]|\s*[*/^+-]))"
+)
+_INERTIA = re.compile(
+    r"\b(?:mass\s+)?(?:moments?\s+of\s+)?inertias?\b(?:[^,;=]*\b(?:cent(?:re|er)s?|of|mass(?:es)?|gravity|centroids?)\b)?"
+    r"|\b(?:massen)?trägheitsmomente?\b(?:[^,;=]*\bschwerpunkte?[sn]?\b)?|(?:绕|对|关于)?质心的?转动惯量|转动惯量",
+    re.IGNORECASE,
+)
+_ANGLE = re.compile(r"\bangles?\b|winkel|角", re.IGNORECASE)
+_LINK = re.compile(r"\blinks?\b|\bglied|连杆|杆", re.IGNORECASE)
+_JOINT = re.compile(r"\bjoints?\b|gelenk|关节", re.IGNORECASE)
 
 
 def doubtful(text: str, entry: str) -> list[tuple[str, str]]:
@@ -58,9 +72,59 @@ def doubtful(text: str, entry: str) -> list[tuple[str, str]]:
     """
     found: list[tuple[str, str]] = []
     for prose, typeset in _proses(text):
-        front, behind = _cut(_FRAME.sub(" ", prose))
-        found += _of(front, entry, typeset) + _parts(front, entry) + _of(behind, BEHIND, typeset)
-    return found
+        front, _behind = _cut(_FRAME.sub(" ", prose))
+        found += _of(front, entry, typeset) + _parts(front, entry)
+    return found + _conditions(text)
+
+
+def explained_by(text: str) -> str:
+    """Words behind ``where`` that are in no list of what names mean anyway; mostly empty."""
+    found = []
+    for prose, typeset in _proses(text):
+        _front, behind = _cut(prose)
+        if behind:
+            behind = _INERTIA.sub(" ", behind)
+            found += [one for one in _of(behind, BEHIND, typeset) if not _used(one[0], text)]
+            if _ANGLE.search(behind) and _LINK.search(behind) and not _JOINT.search(behind):
+                found.append(("", behind.strip()[:_MOST]))  # the angle of link 2 may be a sum
+    return found[0][1] if found else ""
+
+
+def outside_formulas(text: str) -> list[str]:
+    """The pieces of a text in which words may stand."""
+    return [prose for prose, _typeset in _proses(text)]
+
+
+def _used(word: str, text: str) -> bool:
+    """Whether a word is a name in the formula."""
+    name = rf"(?<![A-Za-z]){re.escape(word)}(?![A-Za-z])"
+    return bool(re.search(rf"\(\s*{name}\s*\)|{name}\s*[*/^+=]|[*/^+=-]\s*{name}", text))
+
+
+def condition_in_front(text: str, entry: str) -> bool:
+    """Whether an equation in front of the formula says when it holds: ``for q2 = 0``."""
+    found = _CONDITION.search(_flat(text))
+    if found is None:
+        return False
+    front = _flat(text)[: found.start()]
+    return not re.search(rf"(?<![\w]){re.escape(_flat(entry))}\s*=", front) and bool(
+        _words_in(front)
+    )
+
+
+def _conditions(text: str) -> list[tuple[str, str]]:
+    """Equations that say when a formula holds: ``q2 = 0``, ``l_1 = l_2``."""
+    if not _words_in(text):
+        return []
+    return [(one[0], one[0]) for one in _CONDITION.finditer(_flat(text))]
+
+
+def _flat(text: str) -> str:
+    return re.sub(r"[{}_\\]|d{1,2}ot\b\s*", "", text)
+
+
+def _words_in(text: str) -> bool:
+    return any(_WORDS[typeset].search(prose) for prose, typeset in _proses(text))
 
 
 def left_over(found: Iterable[tuple[str, str]], names: Iterable[str]) -> str:
@@ -78,8 +142,8 @@ def _proses(text: str) -> list[tuple[str, bool]]:
     said += [(one[1], False) for one in _FONT.finditer(text)]
     outside = _FONT.sub(" ; ", _AROUND.sub(" ", text))
     typeset = "\\" in outside
-    if _MATHS.search(outside):
-        outside, typeset = _MATHS.sub(" ; ", outside), False
+    if MATHS.search(outside):
+        outside, typeset = MATHS.sub(" ; ", outside), False
     return [*said, (_COMMAND.sub(" ; ", outside), typeset)]
 
 
@@ -96,12 +160,17 @@ def _of(prose: str, entry: str, typeset: bool) -> list[tuple[str, str]]:
     for one in _WORDS[typeset].finditer(prose):
         word = one["latin"] or chinese_left(one["chinese"], entry)
         if word and not (one["latin"] and says_nothing(word, entry)):
-            found.append((word, _around(prose, one.start(), one.end())))
+            found.append((word, around(prose, one.start(), one.end())))
     return found
 
 
-def _around(prose: str, start: int, end: int) -> str:
-    """The words on both sides of one."""
+def around(prose: str, start: int, end: int) -> str:
+    """The words on both sides of one.
+
+    Args:
+        prose: from :func:`outside_formulas`.
+        start, end: where the one is.
+    """
     behind = _PHRASE.match(prose, end)
     front = _PHRASE.match(prose[:start][::-1])
     end += len(behind[0]) if behind else 0
@@ -119,5 +188,5 @@ def _parts(prose: str, entry: str) -> list[tuple[str, str]]:
         told = one["order"] or one["chinese"]
         number = one["number"] or one["behind"] or (told and str(_ORDER.get(told.lower(), told)))
         if number and number not in own:
-            found.append((one[0], _around(prose, *one.span())))
+            found.append((one[0], around(prose, *one.span())))
     return found

@@ -12,8 +12,14 @@ from functools import cache
 from importlib import resources
 from typing import Any
 
+CHINESE = "\u4e00-\u9fff"
+LATIN = "A-Za-zÄÖÜäöüßéèš"
+"""Letters of words, for patterns."""
 BEHIND = "behind"
 """In an entry's place: what is said of the names in a formula."""
+
+_LONGEST = 8
+"""Signs of the longest Chinese word."""
 
 
 def says_nothing(word: str, entry: str) -> bool:
@@ -31,11 +37,33 @@ def says_nothing(word: str, entry: str) -> bool:
 def chinese_left(text: str, entry: str) -> str:
     """What of a run of Chinese is in no list; empty where all is."""
     told = _known(entry, "chinese")
-    reach = [0]
+    reach = [True] + [False] * len(text)
     for end in range(1, len(text) + 1):
-        if any(text[start:end] in told for start in reach):
-            reach.append(end)
-    return text[reach[-1] :]
+        begins = range(max(0, end - _LONGEST), end)
+        reach[end] = any(reach[start] and text[start:end] in told for start in begins)
+    return "" if reach[-1] else text[max(k for k, one in enumerate(reach) if one) :]
+
+
+def is_listed(word: str) -> bool:
+    """Whether a word is in one of the lists, whatever the entry."""
+    return word.lower() in _every()
+
+
+def is_program(word: str) -> bool:
+    """Whether a word is none of a sentence but of a formula or a program: sin, theta, np."""
+    return word.lower() in _programs()
+
+
+@cache
+def _every() -> frozenset[str]:
+    lists = _lists()
+    told = [lists["anywhere"][key] for key in ("english", "german")]
+    return frozenset(" ".join([*told, *(one["words"] for one in lists["of"])]).split())
+
+
+@cache
+def _programs() -> frozenset[str]:
+    return frozenset(_lists()["anywhere"]["programs"].split())
 
 
 @cache

@@ -1,0 +1,238 @@
+"""The equations in a text with sentences: ``Differentiating x by q2 we get J12 = ...``.
+
+What words are is told by the lists of :mod:`kinlab.formulas.handed.vocabulary`, and by their
+length; they are taken out, and of what is left the equation of the entry is kept, with those that
+explain its names.
+"""
+
+from __future__ import annotations
+
+import re
+
+from kinlab.formulas.handed.prose import MATHS
+from kinlab.formulas.handed.vocabulary import CHINESE, LATIN, is_listed, is_program
+from kinlab.formulas.signs.brackets import parts_at
+from kinlab.formulas.typed import begins_with
+
+_PROGRAM = re.compile(r"\b(?:def|lambda|return|import)\b|```|^\s*`")
+_FONT = re.compile(r"\\(?:text|textrm|textit|textbf|mbox|textnormal|hbox)\s*\{([^{}]*)\}")
+_WORD = re.compile(
+    rf"(?<![\w\\{{.])[{LATIN}]{{2,}}(?:['’-][{LATIN}]{{2,}}|['’]s)*(?![\w(\[{{}}])|[{CHINESE}]+"
+)
+_DOTTED = re.compile(
+    r"\b(?:i\.\s?e|e\.\s?g|d\.\s?h|z\.\s?b|q\.\s?e\.\s?d|bzw|w\.\s?r\.\s?t|resp|ans|eq|no|nr|sol|fig)\.(?=\s|,|$|:)",
+    re.IGNORECASE,
+)
+_DENOTES = re.compile(
+    r"([\\\w{}]{1,15})\s+(?:denotes|means|stands for|is short for|steht für|表示)\s+"
+    r"(?=[^,;.=]{0,60}[-+*/(^])"
+)
+_AND = re.compile(r"and|und|plus|minus|times|twice")
+_OPEN_END = re.compile(r"[\w)}\]²³₀-₉']$")
+_LETTERS = re.compile(
+    rf"(?<![\w\\{{.])(?!(?:sin|cos|tan|sqrt)\b)[{LATIN}]{{3,}}(?![\w(])|[{CHINESE}]"
+)
+_OPERATOR = re.compile(r"[*/^+=<>]")
+_UNIT = re.compile(r"\s*(?:(?:SI|the|units?|of)\s+)*(?:mm|cm|dm|km|m|kg|N|Nm|J|rad|s|deg)\b")
+_GAP = "\0"
+_BETWEEN = re.compile(
+    rf"(?<=\0)\s*[,;:]?\s*\b[{LATIN}]{{1,3}}\b(?=[\s,;:.!?]*\0)|(?:^|(?<=[.,;:]\s))[{LATIN}]{{1,3}}(?=\s+\0)"
+)
+"""A short word that no list has, between others or behind a comma."""
+_BRACKETS = re.compile(r"\(\s*[\0\s,.;:?!'-]*\0[\0\s,.;:?!'-]*\)|\[\s*\0[\0\s]*\]")
+_LABEL = re.compile(
+    r"^\s*(?:(?:[QqAa]?\s?\d{0,2}\s?\(?[a-h]?|\(?[ivx]{1,4})[).:](?![\d*/^])\s*)+(?=\S)"
+)
+_SHORT = 4
+_LONG = 4
+"""Letters from which on what is in no list is a word."""
+_MOST = 200
+"""Words of a text beside a formula."""
+_EDGES = " \t\r\n,.;:!?'’–—#%~"
+_FRONT = re.compile(
+    r"^(?:[\s,.;:!?'’–—#%~]|/{2}|/\*|\*/|=>|->|-->|\\Rightarrow|\\q?quad|\\[,;! ]|\)"
+    r"|-\s(?=[\\A-Za-z][^=\n]{0,30}=))+"
+)
+_BACK = re.compile(
+    r"(?:[\s,;:!?'’–—#%~(]|/{2}|/\*|\*/|=>|->|\\q?quad|\\[,;! ]|(?<=[\s\w)}\]])\.)+$"
+)
+_SIDES = re.compile(r"^(?P<left>[^=]{1,80}?)(?P<sign>\s*&?\s*:?==?(?!=))(?P<right>.*)$", re.DOTALL)
+_ALIGNED = re.compile(
+    r"\\(?:begin|end)\{(?:equation|align|aligned|gather|gathered|split|multline)\*?\}"
+)
+_NAME = re.compile(
+    r"\s*&?\s*(?:det\s*\(?\s*J\s*\)?(?:\(\w+\))?"
+    r"|\\?[A-Za-zα-ωΑ-Ω][\w\\{}'₀-₉ ̇̈^,]*(?:\s*\([^()]{0,30}\)|\[[\d,\[\]]+\])?"
+    r"|\\(?:det|dot|ddot|mathrm|text|boldsymbol|mathbf)[^=]{1,40})\s*"
+)
+_SIGNS = re.compile(r"[_{}\\\s$]")
+
+
+def without_sentences(text: str, entry: str) -> str:
+    """The equations of a text with words; the text as it is where there are no words.
+
+    Args:
+        text: as typed.
+        entry: what the formula is asked for.
+    """
+    if _PROGRAM.search(text) or len(_WORD.findall(text)) > _MOST:
+        return text
+    text = _DENOTES.sub(r"\1 = ", text)
+    opened = _FONT.sub(lambda found: _opened(found, text), text)
+    marked = _marked(opened)
+    if _GAP not in marked and len(MATHS.findall(text)) < 2:
+        return text
+    parts = [
+        one for part in marked.split(_GAP) for one in re.split(r"(?<=\$)\s*[\n,;]\s*(?=\$)", part)
+    ]
+    pieces = [piece for part in parts for piece in _apart(part)]
+    pieces = [piece for piece in pieces if piece]
+    dollars = any("$" in piece for piece in pieces)
+    pieces = [_bare(piece) for piece in pieces]
+    kept = _of_entry([piece for piece in pieces if piece], entry)
+    if not kept:
+        return text
+    told = ";\n".join(kept)
+    return f"${told}$" if dollars else told
+
+
+def _opened(found: re.Match[str], text: str) -> str:
+    """Words in a font of their own as words; what stands in a brace, or is a unit, as it is."""
+    front = text[: found.start()]
+    inside = front.count("{") != front.count("}")
+    words = any(_is_word(one[0], found[1], one) for one in _WORD.finditer(found[1]))
+    return f" {found[1]} " if words and not inside else found[0]
+
+
+def _marked(text: str) -> str:
+    """The text with a mark in each word's place."""
+    text = _DOTTED.sub(_GAP, text)
+    maths = [found.span() for found in MATHS.finditer(text)]
+    out, last = [], 0
+    for found in _WORD.finditer(text):
+        if any(start <= found.start() < end for start, end in maths):
+            continue
+        if _is_word(found[0], text, found):
+            out += [text[last : found.start()], _GAP]
+            last = found.end()
+    text = "".join([*out, text[last:]])
+    if _GAP not in text:
+        return text
+    text = _BETWEEN.sub(_GAP, text)
+    return _BRACKETS.sub(_GAP, text)
+
+
+def _is_word(word: str, text: str, found: re.Match[str]) -> bool:
+    """Whether letters are a word of a sentence, and no name in a formula."""
+    if "\u4e00" <= word[0] <= "\u9fff":
+        return word not in ("常数", "常量")
+    front, behind = text[: found.start()].rstrip(" "), text[found.end() :]
+    listed = is_listed(word)
+    if is_program(word) or re.match(r"\s*&?\s*:?=", behind):
+        return False
+    if front[-1:] in ("*", "^", "+", "-", "=") or (front[-1:] == "/" and front[-2:] != "//"):
+        return False
+    if re.search(r"[\w*/^]\($", front) or re.match(r"\s?(?:[*/^](?![*/])|\+)", behind):
+        return False
+    if re.match(r"\s?-", behind) and not listed:
+        return False
+    if word.lower() == "in" and _UNIT.match(behind):
+        return False
+    if re.search(rf"(?<![\w.]){re.escape(word)}\s*:?=(?!=)", text):
+        return False
+    if not listed and _ends_formula(front):
+        return False  # l2*c12 friction
+    if _AND.fullmatch(word) and _ends_formula(front):
+        after = _WORD.search(behind)
+        return bool("=" in behind or (after and is_listed(after[0])))
+    return listed or len(word) >= _LONG
+
+
+def _ends_formula(front: str) -> bool:
+    """Whether a formula ends here, with no sign and no word behind it."""
+    formula = front.rpartition("=")[2].rstrip(" (")
+    return bool("=" in front and _OPEN_END.search(formula) and not _LETTERS.search(formula))
+
+
+def _apart(part: str) -> list[str]:
+    """A piece without words, cut where a sentence, a label or a line ends."""
+    pieces = []
+    for one in re.split(
+        r"(?<=[\w)}\]²])\.\s+(?=[\\A-Za-z$(=])|:\s+(?=\S)|(?<=\S)\s*(?:=>|-->|⇒|\\Rightarrow)\s*",
+        part,
+    ):
+        pieces += [_trimmed(piece) for piece in _enumerated(one)]
+    return pieces
+
+
+def _enumerated(text: str) -> list[str]:
+    """``2, tau2 = ...`` as two: a comma in front of the sign of equality and none behind it."""
+    front, sign, behind = text.partition("=")
+    if not sign:
+        return [text]
+    *before, last = parts_at(front, ",;")
+    return [*before, f"{last}{sign}{behind}"]
+
+
+def _trimmed(piece: str) -> str:
+    piece = _FRONT.sub("", _LABEL.sub("", piece.strip(_EDGES)))
+    piece = _BACK.sub("", _LABEL.sub("", piece))
+    while piece.endswith("(") or (piece.count("(") > piece.count(")") and piece.endswith("(")):
+        piece = piece[:-1].rstrip(_EDGES)
+    if piece.count(")") > piece.count("(") and piece.endswith(")"):
+        piece = piece[:-1]
+    return piece.strip(" \t\r\n,;:")
+
+
+def _bare(piece: str) -> str:
+    return (
+        re.sub(r"\\[()\[\]]|\$", " ", piece).strip(" \t\r\n,;:")
+        if "$" in piece or r"\(" in piece or r"\[" in piece
+        else piece
+    )
+
+
+def _of_entry(pieces: list[str], entry: str) -> list[str]:
+    """The entry's equation behind those that explain its names; none where it is not sure."""
+    pieces = [piece.removeprefix("=").strip() for piece in pieces]
+    equations = [one for piece in pieces for one in _equations(piece) if _is_equation(one)]
+    mine = [one for one in equations if begins_with(_ALIGNED.sub("", one).strip(), entry)]
+    if not mine:  # a formula without its name, or by another
+        formulas = [one for one in pieces if "=" not in one and _OPERATOR.search(one)]
+        formulas = [one for one in formulas if len(one) > _SHORT]
+        mine = formulas or _last(equations) or [one for one in pieces if "=" in one]
+    if len({_plain(one) for one in mine}) != 1:
+        return []
+    kept = [mine[0]]
+    others = [one for one in equations if one is not mine[0]]
+    left, sign, right = mine[0].partition("=")
+    used = _plain(right if sign else left)
+    while more := [one for one in others if _plain(one.partition("=")[0]) in used]:
+        kept = [*more, *kept]
+        used += _plain(" ".join(one.partition("=")[2] for one in more))
+        others = [one for one in others if not any(one is known for known in more)]
+    return kept
+
+
+def _last(equations: list[str]) -> list[str]:
+    """The equations whose names no other one uses."""
+    names = [_plain(one.partition("=")[0]) for one in equations]
+    used = [_plain(one.partition("=")[2]) for one in equations]
+    return [
+        one for one, name in zip(equations, names, strict=True) if not any(name in x for x in used)
+    ]
+
+
+def _equations(piece: str) -> list[str]:
+    if _ALIGNED.search(piece):
+        return [piece]
+    return [one for one in re.split(r"\n(?=[^\n=]{1,40}=)|;", piece) if one.strip()]
+
+
+def _is_equation(text: str) -> bool:
+    found = _SIDES.match(_ALIGNED.sub("", text).strip())
+    return bool(found and _NAME.fullmatch(found["left"]) and found["right"].strip())
+
+
+def _plain(text: str) -> str:
+    return _SIGNS.sub("", text)
