@@ -87,7 +87,7 @@ def test_a_definition_that_a_right_formula_uses_is_not_blamed() -> None:
     assert "lc2" in str(found) and "b:" not in str(found), str(found)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", [0, 1, 2, 4])  # 3 draws the slips of 2, and 5 those of 4
 def test_what_is_shown_is_right_for_any_numbers(seed: int) -> None:
     """Of a random slip in a definition and one in the formula; asked of sympy, not of the doctor."""
     rng = np.random.default_rng(seed)
