@@ -106,6 +106,8 @@ def _examined(
     label = case.quantity.domain.label(case.robot)
     if worst <= TOLERANCES.formula_agrees:
         hidden, gap, remarks = covered_up(case, engine, written)
+        if gap > TOLERANCES.formula_agrees and not hidden:
+            return _by_numbers_alone(case, engine, written, quantity, name, gap, remarks)
         right = Diagnosis(quantity, label, name, not hidden, max(worst, gap), tuple(hidden))
         rounded = tuple(dict.fromkeys(note for text in written.values() for note in text.rounded))
         form = "rounded" if rounded and not hidden else ""
@@ -156,6 +158,36 @@ def _examined(
         engine[(k, *furthest)],
         "near" if close else "",
         proved=right_parts,
+    )
+
+
+def _by_numbers_alone(
+    case: Case,
+    engine: Array,
+    written: dict[str, Written],
+    quantity: str,
+    name: str,
+    gap: float,
+    remarks: list[str],
+) -> Diagnosis:
+    """What is told of names that only this robot's numbers make right: l1 for 1/2."""
+    label = case.quantity.domain.label(case.robot)
+    wrong = Diagnosis(quantity, label, name, False, gap)
+    other = for_another_arm(case, engine, written)
+    if other is None:
+        return replace(wrong, proved=tuple(remarks))
+    there, right, texts = other
+    errors = relative_errors(there.hand, right)
+    k = first_largest(errors)
+    where, furthest = _worst(there.hand, right, k, there)
+    return replace(
+        wrong,
+        causes=tuple(_ranked(_told(there, right, texts)[0])),
+        proved=(_("it agrees with this robot's numbers, not with others"), *remarks),
+        worst_entry=where,
+        worst_state={n: stack[k] for n, stack in there.arguments.items()},
+        hand=there.hand[(k, *furthest)],
+        engine=right[(k, *furthest)],
     )
 
 

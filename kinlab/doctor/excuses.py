@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -206,6 +207,10 @@ def covered_up(
     """Slips of a text that only the robot's numbers cover up (l1/2 for l1**2 where l1 is 0.5).
 
     Numbers that stand for the robot's, as in (m1 + m2)*0.25, are none, but a remark.
+
+    Returns:
+        What explains it; how far off it is elsewhere, more than nothing also where no single slip
+        explains it and no number in the text can stand for one of the robot's; and remarks.
     """
     derived = reference_of(case) if written else None
     if derived is None:
@@ -229,7 +234,8 @@ def covered_up(
             every = of_entry(case, entry, text) if _names_numbers(text, derived) else []
             told = [s for s in every if not {*s.kinds} & _WHOLE_TERMS and not _as_before(s, text)]
             slips += told[:1]
-            largest = max(largest, gap) if told else largest
+            wrong = bool(told) or not _may_stand(text, derived)
+            largest = max(largest, gap) if wrong else largest
             kept = [] if told else kept
         only += [name for name in kept if name not in only]
     remarks = only_for([f"{name} = {derived.values[name]:.7g}" for name in only])
@@ -244,6 +250,17 @@ def covered_up(
 def _names_numbers(text: Written, derived: Reference) -> bool:
     """Whether a text has a name for any number of the robot's: others hold for this one alone."""
     return not names(text.node).isdisjoint(derived.parameters)
+
+
+def _may_stand(text: Written, derived: Reference) -> bool:
+    """Whether a number in a text may stand for the robot's, 0.25 for l1**2, or l1 for l2."""
+    values = [(name[0], abs(float(x))) for name, x in derived.values.items() if x]
+    if not _names_numbers(text, derived) or len({*values}) < len(values):
+        return True
+    own = {abs(float(x)) for x in derived.values.values()} - {0.0, 1.0}
+    meant = own | {x * y for x in own for y in own} | {1.0 / x for x in own}
+    literals = [abs(float(n.value)) for n in text.literals if not n.exponent]
+    return any(math.isclose(x, y, rel_tol=1e-3) for x in literals for y in meant)
 
 
 def _as_before(slip: Slip, text: Written) -> bool:

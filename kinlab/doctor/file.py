@@ -166,7 +166,7 @@ def _examined(file: FormulaFile, robot: Mechanism, samples: int, seed: int) -> l
 
 def _as_it_is(file: FormulaFile, robot: Mechanism, samples: int, seed: int) -> list[Diagnosis]:
     given = {*file.symbols}
-    file = _with_names(file, robot)
+    file = with_names(file, robot)
 
     def judged(other: FormulaFile) -> list[Diagnosis]:
         done = _by_quantity(other, robot, samples, seed)
@@ -186,8 +186,13 @@ def _as_it_is(file: FormulaFile, robot: Mechanism, samples: int, seed: int) -> l
     return found
 
 
-def _with_names(file: FormulaFile, robot: Mechanism) -> FormulaFile:
-    """The formulas with a meaning for each name that has one elsewhere in them, or by habit."""
+def with_names(file: FormulaFile, robot: Mechanism) -> FormulaFile:
+    """The formulas with a meaning for each name that has one elsewhere in them, or by habit.
+
+    Args:
+        file: the formulas.
+        robot: whose they are.
+    """
     return with_habits(with_forces(with_underscores(file, robot), robot), robot)
 
 
@@ -340,7 +345,7 @@ def require_sound(file: FormulaFile, robot: Mechanism) -> dict[str, str]:
     """
     file = as_judged(file, robot)
     for part in (*file.others, file):
-        part = _with_names(part, robot)
+        part = with_names(part, robot)
         wanted, titles = _claims(part, robot)
         for plain, formulas in wanted.items():
             _answers(plain, formulas, titles, robot, part, _FEWEST, 0)

@@ -494,7 +494,7 @@ def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
     """
     lines = _equations(text)
     lines.sort(key=lambda line: (begins_with(line, entry), "=" not in line))
-    if not begins_with(lines[-1], entry) and "=" in lines[-1]:
+    if lines and not begins_with(lines[-1], entry) and "=" in lines[-1]:
         lines.sort(key=lambda line: not _explains_another(line, lines))
     own = [line.partition("=") for line in lines[:-1]]
     if not own or any(line.count("=") != 1 for line in lines[:-1]):

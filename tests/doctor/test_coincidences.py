@@ -178,3 +178,25 @@ def test_a_constant_is_rounded_by_one_percent_at_most(robot, entry, typed, said)
     assert found.agrees == (not said)
     assert said in found.sentence
     assert said or "stands for" in found.remarks[0]
+
+
+@pytest.mark.parametrize(
+    ("entry", "text", "number"),
+    [
+        ("V", "m1*g*l1^2*s1 + m2*g*(l1*s1 + l1*l2*s12)", "l1 = 0.5"),
+        ("g1", "m1*g*l1^2*c1 + m2*g*(l1*c1 + l1*l2*c12)", "l1 = 0.5"),
+        ("V", "m1*g*l1/m1*s1 + m2*g*(l1*s1 + l2/m1*s12)", "m1 = 2"),
+        ("M12", "m2*(l1^2*l2^2 + l1*l1*l2*c2) + I2", "l1 = 0.5"),
+    ],
+)
+def test_a_name_for_a_number_of_the_same_value_is_not_right(entry, text, number):
+    """Several of them, so that no single slip explains it; l1 is 1/2 here, m1 is 2."""
+    found = kl.diagnose("planar2r_rods", entry, text)
+    assert not found.agrees and not found.causes
+    assert found.proved[0] == "it agrees with this robot's numbers, not with others"
+    assert f"only for {number}" in found.proved[1] and found.error_before > 0.1
+
+
+def test_a_number_of_the_same_value_is_right_for_this_robot():
+    found = kl.diagnose("planar2r_rods", "V", "m1*g*0.25*s1 + m2*g*(0.5*s1 + l2*s12*0.5)")
+    assert found.agrees and found.remarks == ("but it holds only for l1 = 0.5",)

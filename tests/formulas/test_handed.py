@@ -244,7 +244,10 @@ def test_such_words_beside_a_right_formula_do_no_harm():
 def test_the_words_that_were_not_read_are_said_and_cost_one_entry_alone():
     from kinlab.doctor.report import of_document
 
-    given = {"robot": "planar2r", "formulas": {"x": "stretched: x = l1 + l2", "y": "l1*s1 + l2*s12"}}
+    given = {
+        "robot": "planar2r",
+        "formulas": {"x": "stretched: x = l1 + l2", "y": "l1*s1 + l2*s12"},
+    }
     judged, unread = of_document(given, "f.toml")
     assert [one.function for one in judged] == ["y"] and judged[0].agrees
     assert [one.what for one in unread] == ["f.toml: x"] and "'stretched'" in unread[0].reason

@@ -69,6 +69,29 @@ def test_points_place_and_cause(question, answer, verdict, points, place, cause)
         assert (found.place, found.cause) == (place, cause)
 
 
+@pytest.mark.parametrize(
+    ("robot", "entry", "text", "verdict", "place"),
+    [
+        ("planar2r_rods", "g2", "m2*g*l2*c12", "wrong", "g2"),  # the right one has a name of its own
+        ("planar2r_rods", "g2", "m2*g*lc2*s12", "wrong", "g2: look at s12"),
+        ("scara", "T34", "d1 + d3", "wrong", "T34: look at d3"),
+        ("scara", "J", "[-a1*s1-a2*s12, -a2*s12, 0, 0; a1*c1+a2*c12, a2*c12, 0, 0; 0, 0, -1, 0; 1, 1, 0, -1]", "right", ""),
+        ("scara", "J", "[-a1*s1-a2*s12, -a2*s12, 0, 0; a1*c1+a2*c12, a2*c12, 0, 0; 0, 0, 1, 0; 1, 1, 0, -1]", "wrong", "J33"),
+        ("planar2r", "g", f"g1 = {G1} and g2 = m2*g*l2*c12", "right", ""),
+    ],
+)  # fmt: skip
+def test_other_names_and_shapes(robot, entry, text, verdict, place):
+    sheet = {"title": "t", "robot": robot, "feedback": "cause", "questions": [{"id": "k", "entry": entry}]}  # fmt: skip
+    found = kl.mark(sheet, {"ada": {"k": text}})["ada"]["k"]
+    assert (found.verdict, found.place) == (verdict, place), found.remark
+
+
+def test_words_that_were_not_read_cost_no_point_as_a_slip():
+    found = marked({"q1": "for the stretched arm: x = l1 + l2", "q2": f"Hence g1 = {G1}"})
+    assert found["q1"].verdict == "could not be read" and "stretched arm" in found["q1"].remark
+    assert found["q2"].verdict == "right"
+
+
 def test_levels_of_feedback():
     slip = {"q1": "l1*c1 - l2*c12"}
     told = {level: marked(slip, level)["q1"] for level in ("verdict", "place", "cause", "answer")}

@@ -15,7 +15,7 @@ from kinlab.check.quantities.registry import split_name
 from kinlab.doctor.changes import Mechanism, label_of
 from kinlab.doctor.derivations.words import together
 from kinlab.doctor.examine import examine, prepare
-from kinlab.doctor.file import as_judged, examine_formulas, refuse_unjudged
+from kinlab.doctor.file import as_judged, examine_formulas, refuse_unjudged, with_names
 from kinlab.doctor.linkages import five_bar
 from kinlab.doctor.linkages.named_numbers import named_numbers
 from kinlab.doctor.marking.marks import (
@@ -31,6 +31,7 @@ from kinlab.doctor.marking.sheet import FEEDBACK, Question, Sheet
 from kinlab.doctor.marking.submission import Submission, as_entries
 from kinlab.doctor.marking.variation import robot_for
 from kinlab.doctor.program.words import WrongLines
+from kinlab.doctor.shapes import in_full
 from kinlab.doctor.text.claims import claimed_of
 from kinlab.doctor.text.own_names import in_robot_names
 from kinlab.errors import ExpressionError, KinlabError
@@ -179,7 +180,7 @@ def _of_diagnoses(
         raise ExpressionError(said.format(question=question.id, entry=question.entry))
     refuse_unjudged(asked)
     whole = "[" not in question.quantity
-    if whole and any("[" in one.quantity for one in asked) and not _all_given(asked, robot):
+    if whole and any("[" in one.quantity for one in asked) and not _all_given(asked, file, robot):
         return _in_part(question, asked, file, robot)
     if all(one.agrees for one in asked):
         return _right(question, asked, file)
@@ -197,10 +198,15 @@ def _as_read(file: FormulaFile) -> tuple[tuple[str, str], ...]:
     return tuple(equation(_named(name), formula) for name, formula in file.formulas.items())
 
 
-def _all_given(asked: list[Diagnosis], robot: Mechanism) -> bool:
-    """Whether each entry of a five-bar's whole is there, which are judged one by one."""
-    plain = split_name(asked[0].quantity)[0]
-    return isinstance(robot, FiveBar) and len(asked) == five_bar.entry_count(plain)
+def _all_given(asked: list[Diagnosis], file: FormulaFile | None, robot: Mechanism) -> bool:
+    """Whether the entries that are judged one by one are the whole.
+
+    They are of a five-bar where each is there, and of an arm in a matrix that leaves out rows of
+    zeros: four rows of a SCARA's Jacobian, a pose in the plane.
+    """
+    if isinstance(robot, FiveBar):
+        return len(asked) == five_bar.entry_count(split_name(asked[0].quantity)[0])
+    return file is not None and bool(in_full(file, robot)[1])
 
 
 def _in_part(
@@ -247,8 +253,10 @@ def _places(
         paths: frozenset[Any] = frozenset()
         if right:
             formula = parse(right)  # in the writer's names or in the robot's
-            used = tree.names(written) | tree.names(formula)
-            meaning = {n: _meaning(n, file, robot, entry) for n in used}
+            alike = tree.names(written) & tree.names(formula)
+            meaning = _meanings(formula, file, robot, entry)
+            meaning |= _meanings(written, file, robot, entry)
+            meaning = {name: meant for name, meant in meaning.items() if name not in alike}
             paths, _marks = differences(written, tree.renamed(formula, meaning), meaning)
             pieces = [_piece(tree.at_path(written, path)) for path in sorted(paths)]
             shown = _named(entry)
@@ -270,8 +278,10 @@ def _is_place(text: str) -> bool:
     return 0 < len(text) <= 40 and "=" not in text
 
 
-def _meaning(name: str, file: FormulaFile, robot: Mechanism, entry: str) -> Node:
-    return in_robot_names(tree.sym(name), file, robot, entry)
+def _meanings(formula: Node, file: FormulaFile, robot: Mechanism, entry: str) -> dict[str, Node]:
+    """What the names of a formula stand for; its own may be others than those of the file."""
+    named = with_names(replace(file, formulas={entry: formula}), robot)
+    return {n: in_robot_names(tree.sym(n), named, robot, entry) for n in tree.names(formula)}
 
 
 _PLACE = re.compile(r"(line|link|joint|row|rows|entry|entries|column) (\d+)(?: and (\d+))?")
