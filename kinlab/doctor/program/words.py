@@ -294,7 +294,7 @@ _SLIPS = {
     "own joint": ("loop", "condition"),
     "slide as hinge": ("condition",),
     "hinge as slide": ("condition",),
-    "convention": ("name", "index", "entries swapped", "missing factor", "extra factor"),
+    "convention": ("name", "index", "entries swapped", "missing factor", "extra factor", "order"),
     "degrees": ("degrees", "function", "factor", "number"),
     "absolute angles": ("name", "argument", "function", "sum"),
     "table entry": _NUMBERS,

@@ -8,6 +8,7 @@ from itertools import permutations
 
 from kinlab.doctor.bytecode.syntax import called, names, nodes
 from kinlab.doctor.program.edits import chains
+from kinlab.doctor.program.edits.frames import of_links
 from kinlab.doctor.program.edits.scope.forms import statement_of
 from kinlab.doctor.program.edits.single.constants import OF_A_NUMBER, POWER
 from kinlab.doctor.program.edits.single.rows import FLAT
@@ -94,13 +95,15 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             typed = kept is right and getattr(left, "value", 0) in _HALVES
             yield here.instead(kept, "extra factor", _TYPED if typed else cost)
         if isinstance(op, ast.MatMult):
-            yield here.instead(ast.BinOp(right, op, left), "order", 1.06)
+            swapped = chains.exchanged(node, lambda one: observed.shape(one) == ())
+            yield here.instead(swapped, "order", 1.06)
             sizes = observed.shape(node) or (0,)
             twice = _halved(node) if len(sizes) == _PAIR and sizes[0] == sizes[1] else None
             if twice is not None:  # A + A.T for 2*A
                 both = ast.BinOp(twice, ast.Add(), ast.Attribute(twice, "T", ast.Load()))
                 yield here.instead(both, "transposed", 1.0)
             yield from _in_turn(here)
+            yield from of_links(here, observed)
             if isinstance(left, ast.BinOp) and isinstance(left.op, ast.MatMult):
                 last = ast.BinOp(ast.BinOp(left.left, op, right), left.op, left.right)
                 yield here.instead(last, "order", 1.07)
