@@ -401,3 +401,35 @@ def test_a_rotation_gets_no_sign_and_a_list_of_vectors_no_rotation(right, wrong,
     found = kl.diagnose("planar2r", "inverse_dynamics", written(slipped, tmp_path / "slip.py"))
     sentence = found.causes[0].sentence
     assert told in sentence and "-rot(" not in sentence and "(P @" not in sentence, str(found)
+
+
+HALVES = """
+import numpy as np
+from math import cos
+m1, m2, l1, l2 = 2.0, 1.5, 0.5, 0.4
+lc1, lc2 = l1/2, l2/2
+J1, J2 = m1*l1**2/12, m2*l2**2/12
+
+def f(q):
+    b = m2*(lc2**2 + l1*lc2*cos(q[1])) + J2
+    a = J1 + m1*lc1**2 + J2 + m2*(l1**2 + lc2**2 + 2*l1*lc2*cos(q[1]))
+    return np.array([[a, b], [b, J2 + m2*lc2**2]])
+"""
+
+
+def _told_of_halves(right, wrong, path):
+    path.write_text(HALVES.replace(right, wrong))
+    return kl.diagnose("planar2r_rods", "mass_matrix", written(path.read_text(), path))
+
+
+def test_two_names_that_come_to_the_same_are_both_told_first_what_stands_elsewhere(tmp_path):
+    """With centres in the middle l1*lc2 is lc1*l2, whatever the numbers are."""
+    assert _told_of_halves("", "", tmp_path / "right.py").agrees
+    found = _told_of_halves("2*l1*lc2", "2*l1*l2", tmp_path / "slip.py").causes[0].sentence
+    first, last = found.split("should be")[1].split(" or ")
+    assert "2*l1*lc2*cos(q[1])" in first and "2*lc1*l2*cos(q[1])" in last
+
+
+def test_a_product_whose_factors_are_exchanged_is_told_once(tmp_path):
+    found = _told_of_halves("+ l1*lc2*cos", "+ l1*l1*cos", tmp_path / "slip.py").causes[0].sentence
+    assert "lc2" in found and " or " not in found
