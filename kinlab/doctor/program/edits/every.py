@@ -26,7 +26,7 @@ from kinlab.doctor.program.edits.forgotten import (
     of_kinds_of_joints,
     with_slices,
 )
-from kinlab.doctor.program.edits.frames import columns_of, of_columns
+from kinlab.doctor.program.edits.frames import columns_of, of_columns, of_links
 from kinlab.doctor.program.edits.guards import choices, masks, of_guards
 from kinlab.doctor.program.edits.numbers.data import of_data
 from kinlab.doctor.program.edits.scope.forms import statement_of, summands
@@ -232,6 +232,7 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Progra
     whole = seen is not None and seen.whole and shape == ()
     if isinstance(node, ast.BinOp):
         yield from of_operator(here, observed, index or whole)
+        yield from of_links(here, observed) if isinstance(node.op, ast.MatMult) else ()
     elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
         if not is_diagonal(here):
             yield here.instead(node.operand, "sign", 0.97)

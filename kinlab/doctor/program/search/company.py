@@ -6,10 +6,10 @@ import ast
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from functools import reduce
 from typing import TYPE_CHECKING
 
 from kinlab.doctor.bytecode.syntax import copied, factors, nodes
+from kinlab.doctor.program.edits.chains import chain, joined, members
 from kinlab.doctor.program.places import DATA, ProgramEdit, changed, row_of
 from kinlab.doctor.program.trial import Trial
 
@@ -18,12 +18,13 @@ if TYPE_CHECKING:
 
 _NAMES = ("name", "index")
 """Kinds of edits that put another name, or one of another number."""
-_SAME = 0.011
-"""Costs that are one."""
 
 
 def in_company(
-    found: Sequence[ProgramRepair], likely: Callable[[ProgramEdit], float], trial: Trial
+    found: Sequence[ProgramRepair],
+    likely: Callable[[ProgramEdit], float],
+    same: float,
+    trial: Trial,
 ) -> list[ProgramRepair]:
     """Repairs, the first of them with its like in the same line: ``l1*lc2``, or else ``lc1*l2``.
 
@@ -32,6 +33,7 @@ def in_company(
     Args:
         found: single edits that make the program right, the likeliest first.
         likely: how far-fetched an edit is.
+        same: how far apart that may be of what nothing tells apart.
         trial: the program.
     """
     first = found[0].edits[-1] if found else None
@@ -43,7 +45,7 @@ def in_company(
         one = _is_plain(edit) and edit.part == first.part and row_of(edit) == row_of(first)
         apart = edit.changes[0].holder is not first.changes[0].holder
         apart = apart or edit.changes[0].field != first.changes[0].field
-        if one and apart and likely(edit) <= likely(first) + _SAME:
+        if one and apart and likely(edit) <= likely(first) + same:
             alike.setdefault(_written(edit, trial), repair)
     some = [*alike.values()]
     if len(some) < 2:
@@ -55,26 +57,27 @@ def in_company(
 
 
 def _is_plain(edit: ProgramEdit) -> bool:
-    """Whether a name of a number is another in one place of a product."""
+    """Whether another name is put in one place."""
     new = edit.changes[0].new if len(edit.changes) == 1 else None
     return edit.part != DATA and edit.kind in _NAMES and isinstance(new, ast.Name)
 
 
 def _written(edit: ProgramEdit, trial: Trial) -> str:
-    """The part with an edit in it, whatever the order of its factors."""
+    """The part with an edit in it, whatever the order of its factors and terms."""
     with changed(trial, (edit,)):
         return ast.unparse(_Sorted().visit(copied(trial.trees[edit.part])))
 
 
 class _Sorted(ast.NodeTransformer):
-    """The factors of each product in the order of the alphabet."""
+    """The factors of each product, and the terms of each sum, in the order of the alphabet."""
 
     def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
         self.generic_visit(node)
-        if not isinstance(node.op, ast.Mult):
+        if not isinstance(node.op, ast.Mult | ast.Add):
             return node
-        parts = sorted(factors(node), key=ast.unparse)
-        return reduce(lambda one, other: ast.BinOp(one, ast.Mult(), other), parts)
+        first, others = chain(node, (type(node.op),))
+        parts = sorted(members((first, others)), key=ast.unparse)
+        return joined(parts[0], [(node.op, one) for one in parts[1:]])
 
 
 def _company(edit: ProgramEdit, others: Counter[tuple[str, ...]], trial: Trial) -> int:

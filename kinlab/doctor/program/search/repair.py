@@ -211,7 +211,7 @@ class LineSearch:
                     doubted = doubted or self.evidence.coincident(edit)
             found = self._by_evidence(found)
             if not self.stand:
-                found = in_company(found, self.likely, self.trial)
+                found = in_company(found, self.likely, _SAME, self.trial)
             if below < np.inf:
                 return found
             if len(self.stand) < _STANDING and (not found or best > _NUMBER):

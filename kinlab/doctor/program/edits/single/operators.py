@@ -8,7 +8,6 @@ from itertools import permutations
 
 from kinlab.doctor.bytecode.syntax import called, names, nodes
 from kinlab.doctor.program.edits import chains
-from kinlab.doctor.program.edits.frames import of_links
 from kinlab.doctor.program.edits.scope.forms import statement_of
 from kinlab.doctor.program.edits.single.constants import OF_A_NUMBER, POWER
 from kinlab.doctor.program.edits.single.rows import FLAT
@@ -103,7 +102,6 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
                 both = ast.BinOp(twice, ast.Add(), ast.Attribute(twice, "T", ast.Load()))
                 yield here.instead(both, "transposed", 1.0)
             yield from _in_turn(here)
-            yield from of_links(here, observed)
             if isinstance(left, ast.BinOp) and isinstance(left.op, ast.MatMult):
                 last = ast.BinOp(ast.BinOp(left.left, op, right), left.op, left.right)
                 yield here.instead(last, "order", 1.07)
