@@ -438,3 +438,29 @@ def test_two_names_that_come_to_the_same_are_both_told_first_what_stands_elsewhe
 def test_a_product_or_a_sum_in_another_order_is_told_once(right, wrong, name, tmp_path):
     found = _told_of_halves(right, wrong, tmp_path / "slip.py").causes[0].sentence
     assert name in found.split("should be")[1] and " or " not in found
+
+
+CHRISTOFFEL = """
+import numpy as np
+a1, lc2, m2 = 0.5, 0.2, 1.5
+
+def f(q, v):
+    h = -m2*a1*lc2*np.sin(q[1])
+    D = np.zeros((2, 2, 2))
+    D[0, 0, 1] = 2*h
+    D[0, 1, 1] = D[1, 0, 1] = h
+    C = np.zeros((2, 2))
+    for i in range(2):
+        for j in range(2):
+            for k in range(2):
+                C[i, j] += 0.5*(D[i, j, k] + D[i, k, j] - D[j, k, i])*v[k]
+    return C
+"""
+
+
+def test_of_indices_only_one_other_is_told():
+    """Which of two indices is another is not asked: many come to the same on so small an arm."""
+    assert kl.diagnose("planar2r_rods", "coriolis_matrix", written(CHRISTOFFEL)).agrees
+    wrong = CHRISTOFFEL.replace("D[i, j, k] +", "D[j, j, k] +")
+    told = kl.diagnose("planar2r_rods", "coriolis_matrix", written(wrong)).causes[0].sentence
+    assert "D[i, j, k] +" in told.split("should be")[1] and "` or `" not in told

@@ -37,12 +37,12 @@ def in_company(
         trial: the program.
     """
     first = found[0].edits[-1] if found else None
-    if first is None or not _is_plain(first) or found[0].rivals:
+    if first is None or not _is_plain(first, trial) or found[0].rivals:
         return [*found]
     alike = {_written(first, trial): found[0]}
     for repair in found[1:]:
         edit = repair.edits[-1]
-        one = _is_plain(edit) and edit.part == first.part and row_of(edit) == row_of(first)
+        one = edit.part == first.part and _is_plain(edit, trial) and row_of(edit) == row_of(first)
         apart = edit.changes[0].holder is not first.changes[0].holder
         apart = apart or edit.changes[0].field != first.changes[0].field
         if one and apart and likely(edit) <= likely(first) + same:
@@ -56,10 +56,15 @@ def in_company(
     return [best, *(one for one in found if one is not some[0])]
 
 
-def _is_plain(edit: ProgramEdit) -> bool:
-    """Whether another name is put in one place."""
+def _is_plain(edit: ProgramEdit, trial: Trial) -> bool:
+    """Whether another name is put in one place, and in no index."""
     new = edit.changes[0].new if len(edit.changes) == 1 else None
-    return edit.part != DATA and edit.kind in _NAMES and isinstance(new, ast.Name)
+    if edit.part == DATA or edit.kind not in _NAMES or not isinstance(new, ast.Name):
+        return False
+    with changed(trial, (edit,)):
+        every = nodes(trial.trees[edit.part])
+        keys = (one.slice for one in every if isinstance(one, ast.Subscript))
+        return not any(new is inner for key in keys for inner in nodes(key))
 
 
 def _written(edit: ProgramEdit, trial: Trial) -> str:
