@@ -440,7 +440,7 @@ def test_a_product_or_a_sum_in_another_order_is_told_once(right, wrong, name, tm
     assert name in found.split("should be")[1] and " or " not in found
 
 
-CHRISTOFFEL = """
+DERIVATIVES = """
 import numpy as np
 a1, lc2, m2 = 0.5, 0.2, 1.5
 
@@ -460,7 +460,7 @@ def f(q, v):
 
 def test_of_indices_only_one_other_is_told():
     """Which of two indices is another is not asked: many come to the same on so small an arm."""
-    assert kl.diagnose("planar2r_rods", "coriolis_matrix", written(CHRISTOFFEL)).agrees
-    wrong = CHRISTOFFEL.replace("D[i, j, k] +", "D[j, j, k] +")
+    assert kl.diagnose("planar2r_rods", "coriolis_matrix", written(DERIVATIVES)).agrees
+    wrong = DERIVATIVES.replace("D[i, j, k] +", "D[j, j, k] +")
     told = kl.diagnose("planar2r_rods", "coriolis_matrix", written(wrong)).causes[0].sentence
     assert "D[i, j, k] +" in told.split("should be")[1] and "` or `" not in told
