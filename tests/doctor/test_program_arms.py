@@ -10,7 +10,7 @@ import sys
 
 import numpy as np
 import pytest
-from hand_programs import repaired, written
+from hand_programs import lines_named, repaired, with_slips, written
 
 import kinlab as kl
 from kinlab.doctor.program.grounds.apart import arm_apart
@@ -274,3 +274,71 @@ def test_a_right_program_is_right_for_each_arm_that_stands_for_all(links, tmp_pa
             with changed(trial, way):
                 errors.append(worst(other.robot, "mass_matrix", trial.function))
         assert min(errors) < 1e-12
+
+
+CENTRES = """
+import numpy as np
+
+def f(q, v, a):
+    a1, a2 = 0.5, 0.4
+    l1, l2 = 0.25, 0.2
+    ml1, ml2 = 2.0, 1.5
+    Il1, Il2 = 2.0*0.5**2/12, 1.5*0.4**2/12
+    g = 9.81
+    c1, s2, c2, c12 = np.cos(q[0]), np.sin(q[1]), np.cos(q[1]), np.cos(q[0] + q[1])
+    h = ml2*a1*l2*s2
+    m12 = Il2 + ml2*(l2**2 + a1*l2*c2)
+    m11 = Il1 + ml1*l1**2 + Il2 + ml2*(a1**2 + l2**2 + 2*a1*l2*c2)
+    t1 = m11*a[0] + m12*a[1] - h*v[1]*(2*v[0] + v[1]) + (ml1*l1 + ml2*a1)*g*c1 + ml2*l2*g*c12
+    t2 = m12*a[0] + (Il2 + ml2*l2**2)*a[1] + h*v[0]**2 + ml2*l2*g*c12
+    return np.array([t1, t2])
+"""
+
+
+@pytest.mark.parametrize(
+    "slips",
+    [
+        [("h*v[0]**2 + ml2*l2*g*c12", "h*v[0]**2 + ml2*l2*g*c2"), ("(2*v[0] + v[1])", "(v[0] + v[1])")],
+        [("2*a1*l2*c2", "a1*l2*c2"), ("+ h*v[0]**2", "- h*v[0]**2")],
+    ],
+)  # fmt: skip
+def test_lengths_a_and_centres_l_are_those_of_one_arm(slips, tmp_path) -> None:
+    """What is called l1 need be no length, where a1 is: two slips are found all the same."""
+    found = []
+    for name, text in (("right", CENTRES), ("slips", with_slips(CENTRES, slips))):
+        path = tmp_path / f"{name}.py"
+        path.write_text(text)
+        found.append(kl.diagnose("planar2r_rods", "inverse_dynamics", written(text, path)))
+    assert found[0].agrees
+    lines = CENTRES.split("\n")
+    want = {lines.index(next(x for x in lines if right in x)) + 1 for right, _wrong in slips}
+    assert {*lines_named(found[1].causes[0].sentence)} == want
+
+
+ROWS = """
+import numpy as np
+H = np.pi/180
+rows = [(0*H, 0.0, 0.0), (90*H, 0.0, 0.0), (0*H, 0.4318, 0.15005), (-90*H, 0.0203, 0.4318),
+        (90*H, 0.0, 0.0), (-90*H, 0.0, 0.0)]
+
+def f(q):
+    T = np.eye(4)
+    for k, (al, a, d) in enumerate(rows):
+        c, s, ca, sa = np.cos(q[k]), np.sin(q[k]), np.cos(al), np.sin(al)
+        T = T @ np.array([[c, -s, 0, a], [s*ca, c*ca, -sa, -sa*d], [s*sa, c*sa, ca, ca*d],
+                          [0, 0, 0, 1]])
+    return T
+"""
+
+
+def test_numbers_of_a_row_that_are_exchanged_are_told_as_that(tmp_path) -> None:
+    """Of the numbers of a row the place tells which is whose: they are not two wrong ones."""
+    told = []
+    for name, text in (("right", ROWS), ("slip", ROWS.replace("0.0203, 0.4318", "0.4318, 0.0203"))):
+        path = tmp_path / f"{name}.py"
+        path.write_text(text)
+        told.append(kl.diagnose("puma560_modified", "fk", written(text, path)).causes)
+    assert not told[0]
+    told = told[1]
+    assert told[0].kinds == ("entries swapped",)
+    assert "0.0203, 0.4318)" in told[0].sentence.split("should be")[1]

@@ -401,3 +401,66 @@ def test_a_rotation_gets_no_sign_and_a_list_of_vectors_no_rotation(right, wrong,
     found = kl.diagnose("planar2r", "inverse_dynamics", written(slipped, tmp_path / "slip.py"))
     sentence = found.causes[0].sentence
     assert told in sentence and "-rot(" not in sentence and "(P @" not in sentence, str(found)
+
+
+HALVES = """
+import numpy as np
+from math import cos
+m1, m2, l1, l2 = 2.0, 1.5, 0.5, 0.4
+lc1, lc2 = l1/2, l2/2
+J1, J2 = m1*l1**2/12, m2*l2**2/12
+
+def f(q):
+    b = m2*(lc2**2 + l1*lc2*cos(q[1])) + J2
+    I = J1 + J2
+    a = I + m1*lc1**2 + m2*(l1**2 + lc2**2 + 2*l1*lc2*cos(q[1]))
+    return np.array([[a, b], [b, J2 + m2*lc2**2]])
+"""
+
+
+def _told_of_halves(right, wrong, path):
+    path.write_text(HALVES.replace(right, wrong))
+    return kl.diagnose("planar2r_rods", "mass_matrix", written(path.read_text(), path))
+
+
+def test_two_names_that_come_to_the_same_are_both_told_first_what_stands_elsewhere(tmp_path):
+    """With centres in the middle l1*lc2 is lc1*l2, whatever the numbers are."""
+    assert _told_of_halves("", "", tmp_path / "right.py").agrees
+    found = _told_of_halves("2*l1*lc2", "2*l1*l2", tmp_path / "slip.py").causes[0].sentence
+    first, last = found.split("should be")[1].split(" or ")
+    assert "2*l1*lc2*cos(q[1])" in first and "2*lc1*l2*cos(q[1])" in last
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "name"),
+    [("+ l1*lc2*cos", "+ l1*l1*cos", "lc2"), ("I = J1 + J2", "I = J1 + J1", "J2")],
+)
+def test_a_product_or_a_sum_in_another_order_is_told_once(right, wrong, name, tmp_path):
+    found = _told_of_halves(right, wrong, tmp_path / "slip.py").causes[0].sentence
+    assert name in found.split("should be")[1] and " or " not in found
+
+
+DERIVATIVES = """
+import numpy as np
+a1, lc2, m2 = 0.5, 0.2, 1.5
+
+def f(q, v):
+    h = -m2*a1*lc2*np.sin(q[1])
+    D = np.zeros((2, 2, 2))
+    D[0, 0, 1] = 2*h
+    D[0, 1, 1] = D[1, 0, 1] = h
+    C = np.zeros((2, 2))
+    for i in range(2):
+        for j in range(2):
+            for k in range(2):
+                C[i, j] += 0.5*(D[i, j, k] + D[i, k, j] - D[j, k, i])*v[k]
+    return C
+"""
+
+
+def test_of_indices_only_one_other_is_told():
+    """Which of two indices is another is not asked: many come to the same on so small an arm."""
+    assert kl.diagnose("planar2r_rods", "coriolis_matrix", written(DERIVATIVES)).agrees
+    wrong = DERIVATIVES.replace("D[i, j, k] +", "D[j, j, k] +")
+    told = kl.diagnose("planar2r_rods", "coriolis_matrix", written(wrong)).causes[0].sentence
+    assert "D[i, j, k] +" in told.split("should be")[1] and "` or `" not in told

@@ -294,7 +294,7 @@ _SLIPS = {
     "own joint": ("loop", "condition"),
     "slide as hinge": ("condition",),
     "hinge as slide": ("condition",),
-    "convention": ("name", "index", "entries swapped", "missing factor", "extra factor"),
+    "convention": ("name", "index", "entries swapped", "missing factor", "extra factor", "order"),
     "degrees": ("degrees", "function", "factor", "number"),
     "absolute angles": ("name", "argument", "function", "sum"),
     "table entry": _NUMBERS,
@@ -318,7 +318,7 @@ def cause_of(repair: ProgramRepair, search: LineSearch) -> Cause:
     is_ = _("`{piece}` is {thing}")
     told += [is_.format(piece=_typed(text), thing=thing) for text, thing in known[:_NAMED]]
     sentence = _("; ").join(dict.fromkeys(told))
-    for rival in repair.rivals:
+    for rival in repair.rivals if not _beside(repair, trial) else ():
         other = _("; ").join(dict.fromkeys(_told(rival, trial)))
         sentence = _("{one}; or else {other}").format(one=sentence, other=other)
     return Cause(
@@ -350,8 +350,24 @@ def _told(repair: ProgramRepair, trial: Trial) -> Iterator[str]:
             yield told.format(place=said["place"], what=said["what"], new=_text(edit.node))
         elif edit.kind in _MOVED:
             yield _("{place}, `{old}`: {what}").format(**said)
+        elif other := _beside(repair, trial):
+            told = _("{place}, {what}: `{old}` should be `{new}` or `{other}`")
+            yield told.format(**said, other=other)
         else:
             yield _("{place}, {what}: `{old}` should be `{new}`").format(**said)
+
+
+def _beside(repair: ProgramRepair, trial: Trial) -> str:
+    """What may stand as well in the line of a single edit; empty where it is of another line."""
+    rival = repair.rivals[0] if len(repair.edits) == len(repair.rivals) == 1 else None
+    if rival is None or len(rival.edits) != 1:
+        return ""
+    (one,), (other,) = repair.edits, rival.edits
+    if DATA in (one.part, other.part) or {one.kind, other.kind} & {"order of lines", *_MOVED}:
+        return ""
+    (old, _new), (also, new) = _pieces(one, trial), _pieces(other, trial)
+    same = one.part == other.part and row_of(one) == row_of(other) and one.kind == other.kind
+    return new if same and old == also else ""
 
 
 def _by_statement(

@@ -15,6 +15,7 @@ module            what it holds
 ``exchanges``     What a slip moves together: two names for one another, one name throughout a
                   statement
 ``forgotten``     What is forgotten as one writes: a term of two names, a vector behind its number
+``frames``        A link's transform with its factors in another order, a row for a named column
 ``guards``        What counts for some joints alone: conditions, and masks of arrays, around a term
 ``subscripts``    The subscripts of a sum of products: another letter, two for one another
 ``scope/``        What is known in one part of a program, and so may stand in a place of it

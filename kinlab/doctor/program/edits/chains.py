@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import combinations
 
 SUMS = (ast.Add, ast.Sub)
@@ -85,6 +85,21 @@ def part_of(node: ast.expr, count: int) -> ast.BinOp | None:
     below, factors = chain(node.right, (ast.Mult,))
     more = joined(ast.Constant(count), [(ast.Mult(), below), *factors])
     return ast.BinOp(node.left, ast.Div(), more)
+
+
+def exchanged(node: ast.BinOp, plain: Callable[[ast.expr], bool]) -> ast.expr:
+    """The sides of a matrix product for one another; numbers in front stay: ``m*B @ A``.
+
+    Args:
+        node: the product.
+        plain: whether something is a single number.
+    """
+    first, others = chain(node.left, (ast.MatMult,))
+    *front, last = members(chain(first, (ast.Mult,)))
+    if not front or not all(map(plain, front)) or plain(last):
+        return ast.BinOp(node.right, node.op, node.left)
+    numbers = joined(front[0], [(ast.Mult(), one) for one in front[1:]])
+    return joined(ast.BinOp(numbers, ast.Mult(), node.right), [(node.op, last), *others])
 
 
 def together(node: ast.BinOp) -> Iterator[ast.expr]:

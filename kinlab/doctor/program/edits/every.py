@@ -26,6 +26,7 @@ from kinlab.doctor.program.edits.forgotten import (
     of_kinds_of_joints,
     with_slices,
 )
+from kinlab.doctor.program.edits.frames import columns_of, of_columns, of_links
 from kinlab.doctor.program.edits.guards import choices, masks, of_guards
 from kinlab.doctor.program.edits.numbers.data import of_data
 from kinlab.doctor.program.edits.scope.forms import statement_of, summands
@@ -74,6 +75,7 @@ def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[Pro
     elsewhere = Elsewhere(trial, observed)
     for part, tree in enumerate(trial.trees):
         scope, by = scopes[part], (masks(tree), choices(tree))
+        columns = columns_of(tree, observed)
         for here in places(part, tree):
             node = here.node
             scope.stand((*here.above, node))
@@ -82,6 +84,7 @@ def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[Pro
                     every = (*_expression(here, scope, observed),)
                     every += (*elsewhere.edits(here, scope, observed),)
                     every += (*of_guards(here, scope, observed, *by),)
+                    every += (*of_columns(here, columns, scope, observed),)
                     if _sums_names(here, scope):
                         every = (*(_dearer(x, _SUMMED) for x in every),)
                     own = _set_here(here) if isinstance(node, ast.Name) else []
@@ -229,6 +232,7 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Progra
     whole = seen is not None and seen.whole and shape == ()
     if isinstance(node, ast.BinOp):
         yield from of_operator(here, observed, index or whole)
+        yield from of_links(here, observed) if isinstance(node.op, ast.MatMult) else ()
     elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
         if not is_diagonal(here):
             yield here.instead(node.operand, "sign", 0.97)

@@ -299,9 +299,20 @@ class _Reader:
                 alike.add(label[0])
             elif some and link is not None and len(label[2]) < 2 and not _among(every, one.value):
                 strange += [] if _among(kept, one.value) else [label]
-        for name, *_place in strange:
+        centres = {label[0] for label in strange if self._are_centres(label[0], named)}
+        for name in (label[0] for label in strange if label[0] not in centres):
             same = alike if len(name) > 1 or name in "lmij" else alike & {name}
             self.odd = self.odd or any(not unlike(name, other) for other in same)
+
+    def _are_centres(self, name: str, named: Sequence[tuple[ProgramNumber, Label]]) -> bool:
+        """Whether what is called as lengths are is each link's way to its centre: l1, where a1 is
+        the length."""
+        own = [(one.value, self._link(label)) for one, label in named if label[0] == name]
+        centres = [cell for cell in self.cells if cell.kind == "centre"]
+        return "length" in kinds_called(name) and all(
+            link is not None and _among([c for c in centres if link in c.links], value)
+            for value, link in own
+        )
 
     def _is_of_another(self, kind: str, link: int | None, value: float) -> bool:
         """Whether it is another link's number of what is first called so."""

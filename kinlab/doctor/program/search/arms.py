@@ -22,6 +22,9 @@ _ARMS = 600_000
 _KINEMATIC = ("fk", "jacobian", "planar_jacobian", "jacobian_tool", "jacobian_spatial", "statics")
 """Quantities that no mass has a part in."""
 
+_MOVING = ("entries swapped", "rows swapped", "columns swapped", "reversed", "shifted")
+"""Kinds of edits that put what stands in rows into other places."""
+
 Pair = tuple[OtherArm | None, OtherArm | None]
 
 
@@ -69,6 +72,7 @@ class OtherArms:
         """The other arms for the program as it stands now, with these edits in it."""
         told = [one for one in several if not self._counts(one)]
         sets = any(one.part == DATA or one.of_the_arm or one.numbers is not None for one in told)
+        sets = sets or any(map(_moves_numbers, told))  # which is whose is told from its place, too
         if not sets or not any(self.before):
             return self.before
         self.work.done += _ARMS
@@ -149,3 +153,12 @@ class OtherArms:
                 return self.asked.at(case, np.asarray(case.answer(()), dtype=float))
         except (KinlabError, np.linalg.LinAlgError):
             return None
+
+
+def _moves_numbers(edit: ProgramEdit) -> bool:
+    """Whether an edit puts typed numbers into other places of a row, or of a table."""
+    if edit.kind not in _MOVING:
+        return False
+    put = [x for c in edit.changes for x in (c.new if isinstance(c.new, list) else [c.new])]
+    inner = (node for one in put if isinstance(one, ast.AST) for node in nodes(one))
+    return any(isinstance(getattr(node, "value", None), float) for node in inner)

@@ -29,6 +29,7 @@ from kinlab.doctor.program.read import OwnProgram
 from kinlab.doctor.program.search.arms import other_arms_of
 from kinlab.doctor.program.search.asked import Asked
 from kinlab.doctor.program.search.chosen import chosen
+from kinlab.doctor.program.search.company import in_company
 from kinlab.doctor.program.search.solved import Solver
 from kinlab.doctor.program.search.work import Work
 from kinlab.doctor.program.trial import FailedError, NoProgramError, Trial, quietly
@@ -209,6 +210,8 @@ class LineSearch:
                     best = min(best, self.likely(edit) + _ROUGH * rough)
                     doubted = doubted or self.evidence.coincident(edit)
             found = self._by_evidence(found)
+            if not self.stand:
+                found = in_company(found, self.likely, _SAME, self.trial)
             if below < np.inf:
                 return found
             if len(self.stand) < _STANDING and (not found or best > _NUMBER):

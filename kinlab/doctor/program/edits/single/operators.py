@@ -94,7 +94,8 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             typed = kept is right and getattr(left, "value", 0) in _HALVES
             yield here.instead(kept, "extra factor", _TYPED if typed else cost)
         if isinstance(op, ast.MatMult):
-            yield here.instead(ast.BinOp(right, op, left), "order", 1.06)
+            swapped = chains.exchanged(node, lambda one: observed.shape(one) == ())
+            yield here.instead(swapped, "order", 1.06)
             sizes = observed.shape(node) or (0,)
             twice = _halved(node) if len(sizes) == _PAIR and sizes[0] == sizes[1] else None
             if twice is not None:  # A + A.T for 2*A

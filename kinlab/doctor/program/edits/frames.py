@@ -1,0 +1,203 @@
+"""Matrices of frames otherwise: the factors of a link's transform in another order, a row for the
+column of one name."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.program.edits import chains
+from kinlab.doctor.program.edits.scope.forms import entry, named, statement_of
+from kinlab.doctor.program.edits.scope.part import Scope
+from kinlab.doctor.program.edits.single.whole import value_of, whole_constant
+from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.places import Here, ProgramEdit, number, paired
+from kinlab.tolerances import TOLERANCES
+
+_LINK = 4
+"""Factors of a link's transform: about z and along z, along x and about x."""
+_STANDARD = (("turn", 2), ("shift", 2), ("shift", 0), ("turn", 0))
+_MODIFIED = (("turn", 0), ("shift", 0), ("turn", 2), ("shift", 2))
+"""Their orders."""
+_OTHER_TABLE, _IN_TURN = 1.03, 1.1
+"""Cost of the order of the other convention, and of another one."""
+_ACROSS = 1.06
+"""Cost of a row for a column, or of a column for a row."""
+_LEAST = 3
+"""Factors beside the one that stays of which there may be another order."""
+_AXES = 3
+"""Columns of a rotation."""
+
+# -------- The factors of a link's transform
+
+
+def of_links(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
+    """A product of matrices as the other convention has it; one of what a loop adds, in turn.
+
+    Args:
+        here: the product.
+        observed: what its factors were.
+    """
+    parent = here.parent
+    if isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.MatMult):
+        return
+    every = chains.members(chains.chain(here.node, (ast.MatMult,)))
+    before, inner, behind = _without_what_is_set(here, every)
+    for order in _as_of_the_other_table(inner, observed):
+        yield _in_order(here, [*before, *order, *behind], _OTHER_TABLE)
+    if len(inner) >= _LEAST and len(inner) < len(every):  # of a whole one others do this
+        for k in range(1, len(inner)):
+            yield _in_order(here, [*before, *inner[k:], *inner[:k], *behind], _IN_TURN)
+        yield _in_order(here, [*before, *inner[::-1], *behind], _IN_TURN)
+
+
+def _in_order(here: Here, order: Sequence[ast.expr], cost: float) -> ProgramEdit:
+    by = [(ast.MatMult(), one) for one in order[1:]]
+    return here.instead(chains.joined(order[0], by), "order", cost)
+
+
+def _without_what_is_set(
+    here: Here, every: list[ast.expr]
+) -> tuple[list[ast.expr], list[ast.expr], list[ast.expr]]:
+    """The factors without the one that a statement multiplies: ``T`` of ``T = T @ A @ B``."""
+    line = statement_of(here.above)
+    targets = line.targets if isinstance(line, ast.Assign) else []
+    own = [ast.unparse(one) for one in targets]
+    if ast.unparse(every[0]) in own:
+        return every[:1], every[1:], []
+    if ast.unparse(every[-1]) in own:
+        return [], every[:-1], every[-1:]
+    return [], every, []
+
+
+def _as_of_the_other_table(inner: list[ast.expr], observed: Observed) -> Iterator[list[ast.expr]]:
+    """Turns and shifts about and along x and z in the order of the convention that it is not."""
+    if len(inner) != _LINK:
+        return
+    found = {_what_it_does(one, observed): one for one in inner}
+    if set(found) != set(_STANDARD):
+        return
+    own = [*found]
+    first = {axis for _what, axis in (one for one in own[:2] if one is not None)}
+    for order, axis in ((_STANDARD, 2), (_MODIFIED, 0)):
+        if first != {axis}:
+            yield [found[one] for one in order]
+
+
+def _what_it_does(node: ast.expr, observed: Observed) -> tuple[str, int] | None:
+    """Whether a matrix turns or shifts, and about or along which axis; None of another."""
+    seen = observed.of(node)
+    if seen is None or seen.shape != (4, 4) or not seen.values:
+        return None
+    moves = [("shift", axis) for axis in range(3) if _shifts(seen.values, axis)]
+    moves += [("turn", axis) for axis in range(3) if _turns(seen.values, axis)]
+    return moves[0] if len(moves) == 1 else None
+
+
+def _shifts(values: Sequence[Array], axis: int) -> bool:
+    """Whether matrices do nothing but shift along an axis."""
+    rest = [one - np.eye(4) for one in values]
+    moved = [one[axis, 3] for one in rest]
+    for one in rest:
+        one[axis, 3] = 0.0
+    return any(moved) and not any(_is_something(one) for one in rest)
+
+
+def _turns(values: Sequence[Array], axis: int) -> bool:
+    """Whether matrices do nothing but turn about an axis."""
+    unit = np.eye(4)
+    kept = [axis, 3]
+    still = all(
+        not _is_something(one[:, kept] - unit[:, kept])
+        and not _is_something(one[kept] - unit[kept])
+        for one in values
+    )
+    return still and any(_is_something(one - unit) for one in values)
+
+
+def _is_something(matrix: Array) -> bool:
+    return bool(np.max(np.abs(matrix)) > TOLERANCES.same_relation)
+
+
+# -------- Columns that have names
+
+
+def columns_of(tree: ast.AST, observed: Observed) -> dict[str, tuple[str, ...]]:
+    """By each name those of all the columns, or rows, of its matrix: ``n, o, a`` of a rotation.
+
+    Args:
+        tree: a part of a program.
+        observed: what its expressions were.
+    """
+    groups: dict[tuple[str, str], dict[int, str]] = {}
+    for node in (one for one in nodes(tree) if isinstance(one, ast.Assign)):
+        for target in node.targets:
+            for one, value in paired(target, node.value):
+                at = _place_of(value)
+                if isinstance(one, ast.Name) and at is not None:
+                    groups.setdefault(at[0], {})[at[1]] = one.id
+            whole = target.elts if isinstance(target, ast.Tuple) else []
+            shape = observed.shape(node.value)
+            if shape == (len(whole),) * 2 and all(isinstance(x, ast.Name) for x in whole):
+                own = (ast.unparse(node.value), "")
+                groups[own] = {k: x.id for k, x in enumerate(whole) if isinstance(x, ast.Name)}
+    found: dict[str, tuple[str, ...]] = {}
+    for group in groups.values():
+        if all(k in group for k in range(_AXES)):
+            columns = tuple(group[k] for k in range(_AXES))
+            found |= dict.fromkeys(columns, columns)
+    return found
+
+
+def _place_of(value: ast.expr) -> tuple[tuple[str, str], int] | None:
+    """Of which matrix something is a column or a row, and which: ``T[:3, 2]``, ``R[2]``."""
+    if not isinstance(value, ast.Subscript):
+        return None
+    key = value.slice
+    keys = key.elts if isinstance(key, ast.Tuple) else [key]
+    at = [one for one in keys if whole_constant(one)]
+    slices = [one for one in keys if isinstance(one, ast.Slice)]
+    if len(at) != 1 or len(keys) > 2 or len(slices) != len(keys) - 1:
+        return None
+    rest = ", ".join("" if one is at[0] else ast.unparse(one) for one in keys)
+    return (ast.unparse(value.value), rest), value_of(at[0])
+
+
+def of_columns(
+    here: Here, known: dict[str, tuple[str, ...]], scope: Scope, observed: Observed
+) -> Iterator[ProgramEdit]:
+    """A row for a column of one name, and the other way: ``n[2], o[2], a[2]`` for ``a``.
+
+    Args:
+        here: a name, or what is written as a row.
+        known: the columns that have names.
+        scope: whether numpy can be called.
+        observed: the shapes.
+    """
+    node = here.node
+    if isinstance(node, ast.Name) and node.id in known:
+        columns = known[node.id]
+        inner = isinstance(here.parent, ast.Subscript | ast.Attribute)
+        if inner or observed.shape(node) != (len(columns),):
+            return
+        k = columns.index(node.id)
+        row: list[ast.expr] = [entry(named(one), number(k)) for one in columns]
+        if isinstance(here.parent, ast.Assign):
+            yield here.instead(ast.Tuple(row, ast.Load()), "transposed", _ACROSS)
+        elif scope.has_numpy:
+            array = ast.Attribute(named("np"), "array", ast.Load())
+            new = ast.Call(array, [ast.List(row, ast.Load())], [])
+            yield here.instead(new, "transposed", _ACROSS)
+    elif isinstance(node, ast.List | ast.Tuple) and isinstance(node.ctx, ast.Load):
+        given = [one for one in node.elts if isinstance(one, ast.Subscript)]
+        names = tuple(getattr(one.value, "id", "") for one in given)
+        columns = known.get(names[0], ()) if names else ()
+        if names != columns or len(given) < len(node.elts):
+            return
+        at = {value_of(one.slice) for one in given if whole_constant(one.slice)}
+        for k in at & {*range(len(columns))} if len(at) == 1 else ():
+            yield here.instead(named(columns[k]), "transposed", _ACROSS)
