@@ -199,7 +199,9 @@ def _of_entry(pieces: list[str], entry: str) -> list[str]:
     mine = [one for one in equations if begins_with(_ALIGNED.sub("", one).strip(), entry)]
     if not mine:  # a formula without its name, or by another
         formulas = [one for one in pieces if "=" not in one and _OPERATOR.search(one)]
+        given = {_plain(one.partition("=")[0]) for one in equations}
         formulas = [one for one in formulas if len(one) > _SHORT]
+        formulas = formulas or [one for one in pieces[:1] if _plain(one) in given]
         mine = formulas or _last(equations) or [one for one in pieces if "=" in one]
     if len({_plain(one) for one in mine}) != 1:
         return []
