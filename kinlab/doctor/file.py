@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -39,6 +40,8 @@ from kinlab.formulas import tree
 from kinlab.formulas.files import FormulaFile, formula_file
 from kinlab.formulas.lines import Lines, read_lines
 from kinlab.formulas.signs.refusals import refused
+from kinlab.formulas.text import canonical, parse
+from kinlab.formulas.tree import Node
 from kinlab.host.files import read_text
 from kinlab.host.language import N_, _
 
@@ -46,6 +49,7 @@ _FEWEST = 10
 """States that :func:`prepare` asks for at least."""
 
 _FILE_LIMIT = 1 << 20
+_OF_JOINT = re.compile(r"q\d+")
 _MIRRORED = ("mass_matrix",)
 """Quantities whose missing lower half is the upper one."""
 
@@ -119,19 +123,45 @@ def examine_formulas(
     alike = [part for part in parts if len(part) == len(parts[0])]
     told = [_of_chain(list(same)) for same in zip(*alike, strict=True)]
     told = [_with_remarks(one, file.remarks) for one in told] if file.remarks else told
-    return [_judged_with(one, file.unread) for one in told] if file.unread else told
+    return [_judged_with(one, file) for one in told] if file.unread else told
 
 
-def _judged_with(found: Diagnosis, unread: Mapping[str, str]) -> Diagnosis:
-    """A diagnosis of a formula with words that were not read: right, or not judged."""
-    words = next((unread[one] for one in found.function.split(", ") if one in unread), "")
-    if found.agrees or not words:
+_UNCONDITIONED = {"sign", "sin/cos", "index", "power", "argument"}
+"""Kinds of slips that no special case, no part and no other point of the arm can be."""
+
+
+def _judged_with(found: Diagnosis, file: FormulaFile) -> Diagnosis:
+    """A diagnosis of a formula with words that were not read: right, or not judged.
+
+    What holds in a special case alone has fewer terms and names; a slip that leaves them as many
+    is none of that, unless the words tell of other axes.
+    """
+    unread = [file.unread[one] for one in found.function.split(", ") if one in file.unread]
+    if found.agrees or not unread:
+        return found
+    if not any(one.turned for one in unread) and _names_as_much(found, file):
         return found
     said = _(
         "{entry}: not judged. The words {words!r} beside the formula were not read and may say "
         "when it holds or of what it is; leave them out if it is meant for every state"
-    ).format(entry=found.title, words=words)
+    ).format(entry=found.title, words=unread[0].words)
     return replace(found, causes=(), partial=(), proved=(), form="words", remarks=(said,))
+
+
+def _names_as_much(found: Diagnosis, file: FormulaFile) -> bool:
+    """Whether a formula with a slip has as many angles in it as the right one."""
+    if not found.causes or not {*found.causes[0].kinds} <= _UNCONDITIONED:
+        return False
+    right = found.causes[0].corrected
+    pairs = [(parse(right[one]), file.formulas[one]) for one in right if one in file.formulas]
+    return all(_angles(new) <= _angles(old) for new, old in pairs)
+
+
+def _angles(formula: Node) -> int:
+    """How often angles stand in a formula: two of c12."""
+    plain = tree.renamed(formula, {name: canonical(name) for name in tree.names(formula)})
+    found = [str(one.value) for _path, one in tree.nodes(plain) if one.op == "sym"]
+    return sum(bool(_OF_JOINT.fullmatch(name)) for name in found)
 
 
 def as_judged(file: FormulaFile, robot: Mechanism) -> FormulaFile:

@@ -30,7 +30,7 @@ from typing import Any
 from kinlab.errors import ExpressionError, FileError
 from kinlab.formulas import grids, tree, typed
 from kinlab.formulas.handed.equations import solved
-from kinlab.formulas.handed.prose import left_over
+from kinlab.formulas.handed.prose import Unread, left_over
 from kinlab.formulas.handed.reading import as_formula
 from kinlab.formulas.signs.latex import LAMBDA
 from kinlab.formulas.signs.letters import WIDE
@@ -72,7 +72,7 @@ class FormulaFile:
     numbers: Mapping[str, str] = field(default_factory=dict)
     others: tuple[FormulaFile, ...] = ()
     remarks: Mapping[str, str] = field(default_factory=dict)
-    unread: Mapping[str, str] = field(default_factory=dict)
+    unread: Mapping[str, Unread] = field(default_factory=dict)
 
 
 def formula_file(
@@ -126,10 +126,11 @@ def formula_file(
         if len(found) > _FORMULAS:
             raise FileError(f"{place}: {len(found)} {what}; at most {_FORMULAS}")
     remarks: dict[str, str] = {}
-    doubts: dict[str, list[tuple[str, str]]] = {}
+    doubts: dict[str, tuple[str, list[tuple[str, str]]]] = {}
     for key, value in list(entries.items()):
         at = f"{place}: {key}"
-        entries[key], remarks[key], doubts[key] = as_formula(_text(value, at), key, at)
+        entries[key], remarks[key], found = as_formula(_text(value, at), key, at)
+        doubts[key] = _text(value, at), found
         parts = typed.several(entries[key], key)
         if parts and not parts.keys() & entries.keys():
             del entries[key]
@@ -157,8 +158,8 @@ def formula_file(
     names = {*file.symbols}.union(
         *map(tree.names, [*file.formulas.values(), *file.symbols.values()])
     )
-    unread = {key: left_over(said, names) for key, said in doubts.items() if key in file.formulas}
-    unread = {key: words for key, words in unread.items() if words}
+    left = {key: left_over(*doubts[key], names) for key in doubts.keys() & file.formulas.keys()}
+    unread = {key: words for key, words in left.items() if words}
     return replace(file, others=tuple(others), remarks=remarks, unread=unread)
 
 

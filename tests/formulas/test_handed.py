@@ -237,6 +237,21 @@ def test_what_words_may_condition_is_not_judged(entry, text):
     refused("planar2r", entry, text, SHOWN)
 
 
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (f"Whatever the elbow does, x = {X.replace('c12', 's12')}", "sin/cos"), (f"手臂任意摆放: x = {X.replace('+', '-')}", "sign"),
+        (f"The elbow's own axis is irrelevant: x = {X.replace('+', '-')}", ""), ("Whatever the elbow does, x = l1*c1 + l2*c2", ""),
+    ],
+)  # fmt: skip
+def test_a_slip_that_is_no_special_case_is_told_beside_any_words(text, said):
+    """But a sign may be of another axis, and c2 for c12 may be of q1 = 0."""
+    if said:
+        assert said in kl.diagnose("planar2r", "x", text).sentence
+    else:
+        refused("planar2r", "x", text, SHOWN)
+
+
 def test_such_words_beside_a_right_formula_do_no_harm():
     right("planar2r", "x", f"Whatever the pose of the elbow may be: x = {X}")
 

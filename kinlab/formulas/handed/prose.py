@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 from kinlab.formulas.handed.vocabulary import BEHIND, CHINESE, LATIN, chinese_left, says_nothing
 
@@ -58,6 +59,15 @@ _INERTIA = re.compile(
     r"|\b(?:massen)?trägheitsmomente?\b(?:[^,;=]*\bschwerpunkte?[sn]?\b)?|(?:绕|对|关于)?质心的?转动惯量|转动惯量",
     re.IGNORECASE,
 )
+_TURNED = re.compile(
+    r"\bax[ei]s\b|achse|\b(?:frame|system|origin|convention|pointing|points?|downwards?|upwards?"
+    r"|(?:counter-?|anti-?)?clockwise|direction|sense|opposite|mirror\w*|revers\w*|negative|positive"
+    r"|count\w*|reckon\w*|tak(?:e|ing|en)\s+from|seen\s+from|relativ\w*|nullage|zero\s+pos\w+|uhrzeiger\w*"
+    r"|richtung|nach\s+(?:unten|oben)|bezug\w*|koordinatensystem\w*|aus\s+(?:gez|gem)\w*)\b"
+    r"|朝|轴|坐标系|方向|顺时针|逆时针|正向|负|反向|原点|零位",
+    re.IGNORECASE,
+)
+"""Words that may tell of another axis, frame or sense of turning."""
 _ANGLE = re.compile(r"\bangles?\b|winkel|角", re.IGNORECASE)
 _LINK = re.compile(r"\blinks?\b|\bglied|连杆|杆", re.IGNORECASE)
 _JOINT = re.compile(r"\bjoints?\b|gelenk|关节", re.IGNORECASE)
@@ -127,10 +137,31 @@ def _words_in(text: str) -> bool:
     return any(_WORDS[typeset].search(prose) for prose, typeset in _proses(text))
 
 
-def left_over(found: Iterable[tuple[str, str]], names: Iterable[str]) -> str:
-    """The first words that are no names of the formula's; empty where there are none."""
+@dataclass(frozen=True)
+class Unread:
+    """Words beside a formula that may change what it claims.
+
+    Attributes:
+        words: the first of them, for a message.
+        turned: whether they may be of another axis or sense of turning.
+    """
+
+    words: str
+    turned: bool
+
+
+def left_over(text: str, found: Iterable[tuple[str, str]], names: Iterable[str]) -> Unread | None:
+    """What is left of doubtful words without those that are names of the formula's.
+
+    Args:
+        text: as typed.
+        found: from :func:`doubtful`.
+        names: of the formula and of what explains it.
+    """
     known = {name.lower() for name in names}
-    return next((phrase for word, phrase in found if word.lower() not in known), "")
+    phrase = next((phrase for word, phrase in found if word.lower() not in known), "")
+    turned = any(_TURNED.search(prose) for prose in outside_formulas(text))
+    return Unread(phrase, turned) if phrase else None
 
 
 def _proses(text: str) -> list[tuple[str, bool]]:

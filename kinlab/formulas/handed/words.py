@@ -18,7 +18,8 @@ from kinlab.host.language import N_
 _HEAD = re.compile(r"^([A-Za-z][\w ]{0,20}?)\s*:(?![=:])\s*(?=\S)")
 _OTHERWISE = re.compile(
     r"竖直|铅垂|水平(?!面)|夹角|绝对|相对|量起|角度制|错|不对|不正确|不是|并非|不等于"
-    r"|\b(?:measured|absolute[rn]?|relative|vertical|horizontal(?!\s+plane)|gemessen|senkrecht"
+    r"|\b(?:measured|absolute[rn]?|relative|verti[ck]al\w*|horizontal\w*(?!\s+plane)|gemessen|misst"
+    r"|senkrechte?n?"
     r"|waagerecht|grad|degrees?(?!\s+of\s+freedom)|wrong\w*|incorrect\w*|mistak\w*|false"
     r"|falsch\w*)\b",
     re.IGNORECASE,
