@@ -129,8 +129,8 @@ def formula_file(
     doubts: dict[str, tuple[str, list[tuple[str, str]]]] = {}
     for key, value in list(entries.items()):
         at = f"{place}: {key}"
-        entries[key], remarks[key], found = as_formula(_text(value, at), key, at)
-        doubts[key] = _text(value, at), found
+        entries[key], remarks[key], told = as_formula(_text(value, at), key, at)
+        doubts[key] = _text(value, at), told
         parts = typed.several(entries[key], key)
         if parts and not parts.keys() & entries.keys():
             del entries[key]

@@ -43,6 +43,8 @@ _NUMBERED = re.compile(
     r"^\s*(?:\(\s*\d+(?:[.-]\d+)?[a-z]?\s*\)|\d+[.)])\s*(?=[\\A-Za-zα-ω][^=\n]{0,30}=)"
 )
 _SQUARE = re.compile(r"(?:^|[-+*/^=(\[ ]|(?<![\w.])\d)\[(?=[^\[\]]{3})")
+_ANY_SQUARE = re.compile(r"\[(?=[^\[\]]{3})")
+_BELOW = re.compile("[₀-₉]")
 _MOST = 40
 _NEAR = 30
 """Letters in front of a number that say whether it is an index."""
@@ -120,8 +122,12 @@ def _in_brackets(text: str) -> str:
 
 
 def _in_parentheses(text: str) -> str:
-    """``[a + b]θ̈₁`` as ``(a + b)θ̈₁``: a sum in brackets, which is no list."""
-    for found in islice(_SQUARE.finditer(text), _MOST):
+    """``[a + b]θ̈₁`` as ``(a + b)θ̈₁``: a sum in brackets, which is no list.
+
+    Behind a name, ``g[a + b]``, only where indices are small letters: ``m₃g[½l₂ + l₃]``.
+    """
+    pattern = _SQUARE if text.isascii() or not _BELOW.search(text) else _ANY_SQUARE
+    for found in islice(pattern.finditer(text), _MOST):
         start, end = found.end() - 1, closes(text, found.end() - 1)
         inside = text[start + 1 : end]
         if end > 0 and _is_sum(inside) and len(parts_at(inside, ",;\n")) == 1:

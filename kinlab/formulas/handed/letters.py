@@ -41,6 +41,22 @@ def plain_letters(text: str, place: str) -> str:
     return _FRACTION.sub(lambda found: _fraction(found, place), text)
 
 
+_ELL = r"\\ell(?![A-Za-z])"
+_OF_LINK = re.compile(rf"_\s*(?:\{{\s*{_ELL}\s*_?\s*(?:\{{\s*(\w)\s*\}}|(\w))\s*\}})")
+_LENGTH_A = re.compile(r"(?<![A-Za-z\\])a_(?:\d|\{\d\})")
+_OF_CENTRE = re.compile(rf"{_ELL}\s*_\s*(?:\{{\s*(\w)\s*\}}|(\w))")
+
+
+def siciliano_s_letters(text: str) -> str:
+    r"""``m_{\ell_1}`` as ``m_1``; beside lengths ``a_1``, ``\ell_1`` as the distance of the centre."""
+    if "\\ell" not in text:
+        return text
+    text = _OF_LINK.sub(lambda found: f"_{found[1] or found[2]}", text)
+    if not _LENGTH_A.search(text):
+        return text
+    return _OF_CENTRE.sub(lambda found: f"l_{{c{found[1] or found[2]}}}", text)
+
+
 _MARK = r"\\(?:tilde|widetilde|bar|overline|hat|widehat|check)(?![A-Za-z])\s*"
 _MARKED = re.compile(rf"{_MARK}(?:\{{\s*([A-Za-z])\s*\}}|([A-Za-z])(?![A-Za-z]))")
 

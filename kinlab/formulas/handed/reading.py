@@ -8,7 +8,7 @@ from kinlab.formulas.handed.code import without_code
 from kinlab.formulas.handed.columns import of_column
 from kinlab.formulas.handed.constants import without_constant
 from kinlab.formulas.handed.dressed import undressed
-from kinlab.formulas.handed.letters import plain_letters, without_marks
+from kinlab.formulas.handed.letters import plain_letters, siciliano_s_letters, without_marks
 from kinlab.formulas.handed.prose import doubtful
 from kinlab.formulas.handed.rates import plain_rates
 from kinlab.formulas.handed.units import without_units
@@ -39,7 +39,7 @@ def as_formula(text: str, entry: str, place: str) -> tuple[str, str, list[tuple[
     """
     text = _GAP.sub(lambda gap: "\n" if "\n" in gap[0] else " ", plain_letters(text, place))
     doubts = doubtful(text, entry)
-    text, marks = without_marks(text)
+    text, marks = without_marks(siciliano_s_letters(text))
     text = without_code(text, bool(_ALONE.fullmatch(entry)))
     text = undressed(text, entry)
     text = without_words(text, entry, place)
