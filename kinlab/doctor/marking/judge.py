@@ -27,8 +27,10 @@ from kinlab.doctor.marking.marks import (
     wrong_outcome,
 )
 from kinlab.doctor.marking.own_answer import with_answer
+from kinlab.doctor.marking.reading.pieces import is_no_answer
+from kinlab.doctor.marking.reading.questions import as_entries
 from kinlab.doctor.marking.sheet import FEEDBACK, Question, Sheet
-from kinlab.doctor.marking.submission import Submission, as_entries
+from kinlab.doctor.marking.submission import Submission
 from kinlab.doctor.marking.variation import robot_for
 from kinlab.doctor.program.words import WrongLines
 from kinlab.doctor.text.claims import claimed_of
@@ -106,7 +108,7 @@ def _one(sheet: Sheet, question: Question, submission: Submission) -> Outcome:
     )
     if question.id in submission.problems:
         return lost(question, submission.problems[question.id], written)
-    if not given or not any(text.strip(" $") for text in given.values()):
+    if not given or all(map(is_no_answer, given.values())):
         return missing(question)
     try:
         entries = as_entries(question, given, sheet)
