@@ -122,6 +122,7 @@ class Mark(Told):
         pictures: question id to its formulas as MathML, for the page.
         aside: what is said of how it was read and run; nobody has to look at it.
         unread: why nothing of it could be read.
+        stranger: that its student is in no list of ids, where there is one.
     """
 
     file: str
@@ -133,6 +134,7 @@ class Mark(Told):
     pictures: Mapping[str, tuple[str, ...]] | None = None
     aside: str = ""
     unread: str = ""
+    stranger: str = ""
 
     @property
     def total(self) -> float:
@@ -195,7 +197,8 @@ class Marks:
 
     def said(self) -> list[str]:
         """What a teacher should hear at once: files that are not read, and why."""
-        lines = [mark.unread for mark in self.marks if mark.unread]
+        lines = [mark.stranger for mark in self.marks if mark.stranger]
+        lines += [mark.unread for mark in self.marks if mark.unread]
         if self.not_read:
             said = _("not read: {names}").format(names=several(self.not_read))
             lines.insert(0, said)

@@ -122,7 +122,7 @@ def _slip(slip: tuple[str, str], found: list[Mark], count: int) -> dict[str, Any
 _ENTRY = re.compile(r"(.+)_\{(\d)(\d)\}")
 _WIDEST = 300
 """Characters of LaTeX in a row of a matrix, above which its entries stand below each other."""
-_CODE = re.compile(r"`([^`]*)`")
+_CODE, _LATEX = re.compile(r"`([^`]*)`"), re.compile(r"\\|[_^]\{")
 
 
 def pictures_of(formulas: Iterable[tuple[str, str]]) -> tuple[str, ...]:
@@ -180,7 +180,7 @@ def _answer(texts: Iterable[str]) -> list[Markup]:
     return [
         Markup(picture or _CODE.sub(r"<code>\1</code>", str(escape(text))))
         for text, picture in shown
-        if picture or not ("\\" in text and some)
+        if picture or not (some and _LATEX.search(text))
     ]
 
 

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from kinlab.arrays import shown, whole, word
+from kinlab.doctor.marking.handout import students_of
 from kinlab.doctor.marking.judge import judge
 from kinlab.doctor.marking.marks import Mark, Marks, Outcome, lost, slug_of
 from kinlab.doctor.marking.own_answer import check_answers
@@ -25,7 +26,7 @@ from kinlab.doctor.marking.pages import pictures_of
 from kinlab.doctor.marking.program import judge_program
 from kinlab.doctor.marking.results import write_marks
 from kinlab.doctor.marking.sheet import FEEDBACK, Sheet, SheetError, read_sheet, sheet_of
-from kinlab.doctor.marking.students import by_student, not_read, with_not_read
+from kinlab.doctor.marking.students import by_student, not_read, with_not_read, with_strangers
 from kinlab.doctor.marking.submission import (
     Submission,
     found_in,
@@ -84,6 +85,7 @@ def mark(
     """
     read = _sheet(sheet)
     check_answers(read)
+    known = students_of(read.variation.ids) if read.variation and read.variation.ids else []
     level = read.feedback if feedback is None else word(feedback, FEEDBACK, "feedback")
     if output is not None and not isinstance(output, (str, Path)):
         raise FileError(f"output is {shown(output)}; give a folder")
@@ -93,7 +95,8 @@ def mark(
     else:
         done = _of_files(read, submissions, output, level, run_python, count, progress)
     others = not_read(submissions) if isinstance(submissions, (str, Path)) else []
-    marks = Marks(read, tuple(with_not_read(by_student(done), others)), level, tuple(others))
+    students = with_strangers(with_not_read(by_student(done), others), known)
+    marks = Marks(read, tuple(students), level, tuple(others))
     if output is not None:
         write_marks(marks, Path(output))
     return marks

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -113,5 +114,30 @@ def with_not_read(marks: Sequence[Mark], names: Iterable[str]) -> list[Mark]:
         if mine:
             said = _("not read: {names}").format(names=_(", ").join(mine[:_TOLD]))
             one = replace(one, note=joined(one.note, said))
+        result.append(one)
+    return result
+
+
+def with_strangers(marks: Sequence[Mark], known: Sequence[str]) -> list[Mark]:
+    """The marks, with a note of each student whose numbers were handed out to nobody.
+
+    Args:
+        marks: one for each student.
+        known: the ids of those who were given numbers; empty: nobody is a stranger.
+    """
+    ids = {who.strip().casefold(): who for who in known}
+    result = []
+    for one in marks:
+        if ids and one.student.strip().casefold() not in ids:
+            close = difflib.get_close_matches(one.student.casefold(), ids, n=3, cutoff=0.6)
+            said = _("{student} is in no line of the ids: its numbers were handed out to nobody")
+            if close:
+                said = _(
+                    "{student} is in no line of the ids: its numbers were handed out to nobody; "
+                    "did you mean {names}?"
+                )
+            names = _(", ").join(ids[name] for name in close)
+            told = said.format(student=one.student, names=names)
+            one = replace(one, note=joined(one.note, told), stranger=told)
         result.append(one)
     return result

@@ -38,7 +38,14 @@ _LINES = 2000
 _WIDEST = 200
 _TOLD = 6
 """Lines that a note names."""
-_IDS = ("student_id", "student id", "student number", "student no", "student", "id")
+_IDS: tuple[str, ...] = (
+    "student_id",
+    "student id",
+    "student number",
+    "student no",
+    "student",
+    "id",
+)
 _IDS += ("matriculation number", "matriculation", "matrikelnummer", "学生", "学号")
 _NAMES = ("student name", "full name", "name", "姓名", "名字")
 

@@ -131,14 +131,14 @@ def refuse(
 def loaded(program: str) -> tuple[Reply, Reply]:
     """What a program defines, as far as it came, and its functions' names with how it ended."""
     space: Reply = {"__name__": "submission", "__builtins__": __builtins__}
-    said: Reply = {}
+    error: Reply = {}
     try:
         exec(compile(program, "submission.py", "exec"), space)  # noqa: S102
     except (Exception, SystemExit) as problem:  # noqa: BLE001
-        said["error"] = f"{type(problem).__name__}: {problem}"[:200]
+        error["error"] = f"{type(problem).__name__}: {problem}"[:200]
     codes = ((name, getattr(value, "__code__", None)) for name, value in [*space.items()])
     own = [name for name, code in codes if getattr(code, "co_filename", "") == "submission.py"]
-    return space, {**said, "functions": [name[:40] for name in own[:20]]}
+    return space, error | {"functions": [name[:40] for name in own[:20]]}
 
 
 def answers(space: Reply, wanted: list[Any], arguments: Reply) -> Iterator[Reply]:
@@ -158,7 +158,7 @@ def answers(space: Reply, wanted: list[Any], arguments: Reply) -> Iterator[Reply
             stacked = np.stack(values)
             if stacked.size > _MOST:
                 raise ValueError("the answer is too large")
-            found = {"shape": list(stacked.shape), "values": stacked.ravel().tolist()}
+            found: Reply = {"shape": list(stacked.shape), "values": stacked.ravel().tolist()}
         except (Exception, SystemExit) as problem:  # noqa: BLE001  whatever a program may raise
             found = {"error": f"{type(problem).__name__}: {problem}"[:200]}
         yield {"question": question, **found}

@@ -292,6 +292,7 @@ def as_entries(question: Question, given: Mapping[str, str], sheet: Sheet) -> di
     shown = shown_entry(question.entry)
     named: dict[str, str] = {}
     for name, text in given.items():
+        text = _without_unit(text, question, sheet) if question.answer else text
         said = claims(text, name or default) or name
         if said in ("", question.id, question.entry, default, shown, _head(question)):
             named[default] = text
@@ -307,6 +308,29 @@ def as_entries(question: Question, given: Mapping[str, str], sheet: Sheet) -> di
             said = default
         named[said] = text
     return named
+
+
+_UNIT = r"(?:kg|rad|Nm|N|J|W|m|s)(?:(?:\^|\*\*)-?\d|[²³])?"
+_TYPESET = re.compile(r"\$|\\[,;: ]|~|\\(?:mathrm|text|textrm|rm|si|unit)(?![A-Za-z])|[{}]")
+_MEASURED = re.compile(
+    r"\s*(?P<left>[\\A-Za-z][\w\\{}]*\s*=\s*)?(?:about|approx(?:imately|\.)?|roughly|circa|ca\.?|etwa|rund|≈|~|约|大约)?"
+    r"\s*(?P<number>[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?)\s*"
+    rf"(?P<unit>{_UNIT}(?:\s*[ *·/]\s*{_UNIT}){{0,3}})?\s*\.?\s*"
+)
+
+
+def _without_unit(text: str, question: Question, sheet: Sheet) -> str:
+    """A bare number without its SI unit, where no letter of that is a name: ``about 1.15 m``."""
+    plain = _TYPESET.sub(" ", text) if len(text) <= 100 else ""
+    found = _MEASURED.fullmatch(plain)
+    if found is None:
+        return text
+    known = {*named_numbers(sheet.robot)}
+    for one in question.answer.values():
+        known |= {*_WORD.findall(one)}
+    if known & {*_WORD.findall(found["unit"] or "")}:
+        return text
+    return (found["left"] or "") + found["number"]
 
 
 def _right_of(text: str) -> str:
