@@ -193,3 +193,20 @@ def test_hostile_texts_take_no_time(text, tmp_path):
         kl.mark(SHEET, tmp_path, workers=1)
         (tmp_path / name).unlink()
     assert time.process_time() - begun < 10.0
+
+
+def test_own_commands_of_latex_are_written_out(tmp_path):
+    text = (
+        "\\newcommand{\\dd}{\\ddot\\theta}\n\\def\\la{l_1}\n\\newcommand{\\vect}[1]{\\mathbf{#1}}\n"
+        "\\begin{document} q1: $x = \\la c_1 + l_2 c_{12}$ \\lambda \\end{document}"
+    )
+    assert marked(tmp_path, text, "a.tex")["q1"].right
+    bomb = "".join(
+        f"\\def\\{a}{{{b * 50}}}\n" for a, b in (("a", "\\b"), ("b", "\\c"), ("c", "\\d"))
+    )
+    kl.mark(SHEET, [_written(tmp_path / "b.tex", bomb + "\\a " * 2000 + "$x = l_1$")], workers=1)
+
+
+def _written(path, text):
+    path.write_text(text)
+    return path

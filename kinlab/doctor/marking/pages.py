@@ -167,7 +167,7 @@ def _in_rows(formulas: list[tuple[str, str]]) -> list[tuple[str, str]]:
     if max(sum(map(len, line)) for line in lines) > _WIDEST:
         return formulas
     inside = r" \\ ".join(" & ".join(line) for line in lines)
-    return [(heads.pop(), rf"\begin{{bmatrix}} {inside} \end{{bmatrix}}")]
+    return [(heads.pop(), rf"\left[\begin{{matrix}} {inside} \end{{matrix}}\right]")]
 
 
 def _answer(texts: Iterable[str]) -> list[Markup]:

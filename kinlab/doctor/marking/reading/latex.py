@@ -27,6 +27,11 @@ _SHOWN = re.compile(
     re.DOTALL,
 )
 _COMMENT = re.compile(r"(?<!\\)%.*")
+_OWN = re.compile(
+    r"\\(?:(?:re)?newcommand\*?|def)\s*\{?\s*(\\[A-Za-z]{1,20})\s*\}?\s*"
+    r"\{((?:[^{}\n]|\{[^{}\n]*\}){0,200})\}"
+)
+_COMMANDS, _LARGEST = 40, 1 << 19
 _INSIDE = re.compile(r"\\begin\{(\w*matrix|array|aligned|split)\}.*?\\end\{\1\}", re.DOTALL)
 _TITLE = re.compile(
     r"\\(?:(?:sub){0,2}section|(?:sub)?paragraph|chapter|part|subsubsection)\*?\s*\{([^{}\n]*)\}"
@@ -50,7 +55,7 @@ def pieces_of_latex(text: str, labels: Labels, sheet: Sheet) -> tuple[list[Piece
     Raises:
         FileError: more formulas than any homework has.
     """
-    text = _COMMENT.sub("", text)
+    text = _expanded(_COMMENT.sub("", text))
     if text.count(r"\begin") > _MOST or text.count("$") > 4 * _MOST or text.count(r"\[") > _MOST:
         raise FileError(_("more than {most} formulas in one file").format(most=_MOST))
     body = _BODY.search(text)
@@ -69,6 +74,19 @@ def pieces_of_latex(text: str, labels: Labels, sheet: Sheet) -> tuple[list[Piece
             if "=" in row or (under and is_formula(row)):
                 pieces.append(Piece(f"${bare(row)}$", "", under))
     return [*pieces, *_between(text[end:], labels, under)[1]], 0
+
+
+def _expanded(text: str) -> str:
+    r"""The text with the writer's own commands written out, those without arguments: ``\dd``."""
+    own = dict(_OWN.findall(text)[:_COMMANDS])
+    text = _OWN.sub(" ", text)
+    for _round in range(2):
+        for name, meaning in own.items():
+            if len(text) + text.count(name) * len(meaning) > _LARGEST:
+                return text
+            put = meaning.replace("\\", r"\\")
+            text = re.sub(rf"{re.escape(name)}(?![A-Za-z])", put, text)
+    return text
 
 
 def _with_items(text: str, sheet: Sheet) -> str:
