@@ -27,6 +27,8 @@ HANDOUT = Annotated[
 PYTHON = Annotated[
     bool, typer.Option("--run-python", help="Run .py submissions, each with limits of its own.")
 ]
+_MOST = 20
+"""Files that could not be read, of which the command speaks; the class's page has all."""
 WORKERS = Annotated[int | None, typer.Option(help="Processes; as many as processors without it.")]
 
 
@@ -74,6 +76,8 @@ def mark(
             progress=show,
         )
     echo(str(marks))
+    for line in marks.said()[:_MOST]:
+        echo(f"  {visible(line)}")
     for (question, kind), count in marks.slips().most_common(10):
         said = _("  {question}: {kind}, {count} of {all}")
         echo(said.format(question=question, kind=_(kind), count=count, all=len(marks)))

@@ -176,6 +176,8 @@ def symbol(name: str) -> str:
         return f"{dotted}_{{{index}}}"
     if name.startswith(_WORST):
         return rf"\dot{{\Theta}}_{{{name.removeprefix(_WORST).replace('_', '')}}}"
+    if name in ("det", "det J"):
+        return rf"\{name}"
     short = SHORTHAND.fullmatch(name)
     if short:
         return f"{short.group(1)}_{{{short.group(2)}}}"

@@ -294,7 +294,7 @@ def judged(out: Path, given: dict[str, dict[str, Answer]]) -> tuple[Counter[str]
     """Kinds of answers by verdict, and what is false."""
     counts: Counter[str] = Counter()
     false = []
-    with (out / "marks.csv").open(encoding="utf-8", newline="") as stream:
+    with (out / "marks.csv").open(encoding="utf-8-sig", newline="") as stream:
         rows = {row["student"]: row for row in csv.DictReader(stream)}
     for who, answers in given.items():
         for question, one in answers.items():

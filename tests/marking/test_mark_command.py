@@ -20,7 +20,7 @@ def test_the_example_from_a_shell(tmp_path):
     done = CliRunner().invoke(app, ["mark", sheet, folder, "-o", str(out), "--workers", "1"])
     assert done.exit_code == 0, done.output
     assert "2 submissions, mean 7.50 of 10 points" in done.output
-    with (out / "marks.csv").open() as file:
+    with (out / "marks.csv").open(encoding="utf-8-sig") as file:
         rows = {row["student"]: row for row in csv.DictReader(file)}
     assert [rows["ada"][k] for k in ("q1", "q2", "q3", "q4")] == ["2", "2", "3", "1"]
     assert [rows["bob"][k] for k in ("q1", "q2", "q3", "q4")] == ["2", "2", "3", "0"]

@@ -35,10 +35,10 @@ def sheet(**changes):
         ({"questions": [{"id": "q1", "quantity": "fk[:3,3]"}]}, "is a range"),
         ({"questions": [{"id": "q1", "quantity": "fk", "answer": "1"}]}, "quantity and answer are both given"),
         ({"questions": [{"id": "q1", "entry": "tau1", "points": -1}]}, "points is -1"),
-        ({"questions": [{"id": "q1", "entry": "tau1", "points": "4"}]}, "points is str; write a number"),
+        ({"questions": [{"id": "q1", "entry": "tau1", "points": "4"}]}, "points is '4'; write a number"),
         ({"questions": [{"id": "q1", "quantity": "fivebar_rods"}]}, "fivebar_rods is no quantity of planar2r"),
         ({"variation": {"names": ["l9"]}}, r"\[variation\]: names: planar2r has no 'l9'"), ({"variation": {"spread": 2}}, "spread is 2"),
-        ({"title": 3}, "title is int; write text"),
+        ({"title": 3}, "title is 3; write text"),
         ({"questions": [{"id": "q1", "entry": "tau9"}]}, r"\(q1\): planar2r of 2 joints has no tau9"),
         ({"questions": [{"id": "q1", "quantity": "mass_matrix[0,5]"}]}, r"has no mass_matrix\[0,5\]"),
     ],
@@ -148,3 +148,56 @@ def test_handouts(tmp_path):
     ids.write_text("ada\nADA\n")
     with pytest.raises(FileError, match="'ADA' stands there twice"):
         students_of(ids)
+
+
+def test_an_id_that_is_in_no_list_is_told(tmp_path):
+    (tmp_path / "ids.txt").write_text("ada\nbob\n")
+    path = tmp_path / "s.toml"
+    path.write_text(
+        'robot = "planar2r"\n[variation]\nseed = 3\nids = "ids.txt"\n'
+        '[[questions]]\nid = "q1"\nentry = "x"\n'
+    )
+    answers = {who: {"q1": "l1*c1 + l2*c12"} for who in ("Ada", "bobb", "xerxes")}
+    marks = kl.mark(path, answers)
+    assert [mark.note for mark in marks.marks] == [
+        "",
+        marks["bobb"].stranger,
+        marks["xerxes"].stranger,
+    ]
+    assert (
+        "bobb is in no line of the ids" in marks["bobb"].note
+        and "did you mean bob?" in marks["bobb"].note
+    )
+    assert "did you mean" not in marks["xerxes"].note
+    assert marks.said() == [marks["bobb"].stranger, marks["xerxes"].stranger]
+    (tmp_path / "ids.txt").unlink()
+    with pytest.raises(FileError, match="ids.txt: no such file"):
+        kl.mark(path, answers)
+
+
+@pytest.mark.parametrize(
+    ("answer", "right"),
+    [
+        ("1.15 m", True), ("115 cm", True), ("r = 1.15 m", True), ("about 1.15 m", True), ("1.15", True), ("1.15 kg", True),
+        (r"$1.15\,\mathrm{m}$", True), ("ca. 1.15 m.", True), ("1.5 m", False), ("1.15 m1", False), ("-1.15 m", False),
+    ],
+)  # fmt: skip
+def test_a_number_may_have_its_unit(answer, right):
+    asked = {"id": "q1", "answer": "l1 + l2 + l3", "text": "The reach."}
+    marks = kl.mark({"robot": "planar3r", "questions": [asked]}, {"ada": {"q1": answer}})
+    assert marks["ada"]["q1"].right is right, marks["ada"]
+
+
+def test_a_letter_that_is_a_name_is_no_unit():
+    asked = {"id": "q1", "answer": "2*m", "text": "Twice the mass m."}
+    marks = kl.mark({"robot": "planar3r", "questions": [asked]}, {"ada": {"q1": "2 m"}})
+    assert marks["ada"]["q1"].right
+
+
+@pytest.mark.parametrize(
+    "answer", ["tau = -k*theta1", r"$\tau_s = -k\theta_1$", "F_s = -k*q1", "-k*theta_1"]
+)
+def test_an_own_answer_may_be_called_anything(answer):
+    asked = {"id": "q1", "answer": "-k*q1", "text": "A spring of stiffness k."}
+    marks = kl.mark({"robot": "planar3r", "questions": [asked]}, {"ada": {"q1": answer}})
+    assert marks["ada"]["q1"].right, marks["ada"]

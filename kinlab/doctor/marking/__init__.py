@@ -14,12 +14,15 @@ module          what it holds
 ``pages``       The pages: one for each student, one of the class. No script, nothing fetched
 ``program``     A submission in Python: run in a process of its own, only where the teacher asks
                 for it
+``reading/``    What is handed in, read: its encoding, its formulas, and which question each of
+                them answers
 ``results``     What is written of a class: marks.csv, a page for each student and one of the
                 class, results
 ``run``         A class marked: worker processes, one submission at a time each; resumable, in any
                 order
 ``sheet``       The sheet: title, robot, questions, points, what each kind of slip costs, how much
                 is told
+``students``    One student's files together, and the files beside them that are not read
 ``submission``  What a student hands in: TOML, LaTeX or text, read so that one file harms only
                 itself
 ``variation``   Numbers of the robot for each student, from the sheet's seed and the student's id

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any
@@ -15,6 +15,7 @@ from kinlab.check.quantities.registry import split_name
 from kinlab.doctor.changes import Mechanism, label_of
 from kinlab.doctor.derivations.words import together
 from kinlab.doctor.examine import examine, prepare
+from kinlab.doctor.excuses import only_for
 from kinlab.doctor.file import as_judged, examine_formulas, refuse_unjudged, with_names
 from kinlab.doctor.linkages import five_bar
 from kinlab.doctor.linkages.named_numbers import named_numbers
@@ -27,9 +28,12 @@ from kinlab.doctor.marking.marks import (
     wrong_outcome,
 )
 from kinlab.doctor.marking.own_answer import with_answer
+from kinlab.doctor.marking.reading.pieces import is_no_answer
+from kinlab.doctor.marking.reading.questions import as_entries
 from kinlab.doctor.marking.sheet import FEEDBACK, Question, Sheet
-from kinlab.doctor.marking.submission import Submission, as_entries
+from kinlab.doctor.marking.submission import Submission
 from kinlab.doctor.marking.variation import robot_for
+from kinlab.doctor.marking.words import for_student
 from kinlab.doctor.program.words import WrongLines
 from kinlab.doctor.shapes import in_full
 from kinlab.doctor.text.claims import claimed_of
@@ -107,7 +111,7 @@ def _one(sheet: Sheet, question: Question, submission: Submission) -> Outcome:
     )
     if question.id in submission.problems:
         return lost(question, submission.problems[question.id], written)
-    if not given or not any(text.strip(" $") for text in given.values()):
+    if not given or all(map(is_no_answer, given.values())):
         return missing(question)
     try:
         entries = as_entries(question, given, sheet)
@@ -118,10 +122,23 @@ def _one(sheet: Sheet, question: Question, submission: Submission) -> Outcome:
         else:
             outcome = with_answer(sheet, question, submission.student, file)
     except KinlabError as problem:
-        return lost(question, str(problem), written)
+        return lost(question, _in_own_names(str(problem), given, submission), written)
     except Exception as problem:  # noqa: BLE001  whatever happens costs one answer, not a class
         return lost(question, f"{question.id}: {type(problem).__name__}", written)
     return replace(outcome, written=written)
+
+
+_UNKNOWN = re.compile(r"'([A-Za-z]\w*)'")
+
+
+def _in_own_names(problem: str, given: Mapping[str, str], submission: Submission) -> str:
+    """A problem for its writer; none that begins with a name that nobody typed."""
+    own = submission.symbols
+    typed = " ".join([*given, *given.values(), *own, *map(str, own.values())])
+    plain, named = re.sub(r"[\s_{}\\]", "", typed), _UNKNOWN.search(problem)
+    if named and typed.isascii() and named[1].replace("_", "") not in plain:
+        return _("it could not be judged; mark it by hand")
+    return for_student(problem)
 
 
 # -------- Beside the engine
@@ -188,10 +205,29 @@ def _of_diagnoses(
 
 
 def _right(question: Question, asked: list[Diagnosis], file: FormulaFile | None) -> Outcome:
-    remarks = [remark for one in asked for remark in one.remarks]
+    remarks = [told for one in asked for remark in one.remarks if (told := _used(remark, file))]
     remark = _("; ").join(dict.fromkeys(remarks))
     formulas = _as_read(file) if file else ()
     return right_outcome(question, {one.form for one in asked}, formulas, remark)
+
+
+_NUMBERS = re.compile(r"([A-Za-z]\w*) = (-?\d[\d.e+-]*)")
+_MOVES = re.compile(r"(?:q|qd|qdd|th|theta|[cs])\d+")
+
+
+def _used(remark: str, file: FormulaFile | None) -> str:
+    """A remark on numbers of the arm, without those that a formula in names has not."""
+    pairs = _NUMBERS.findall(remark)
+    if file is None or only_for([f"{name} = {value}" for name, value in pairs]) != [remark]:
+        return remark
+    whole = [*file.formulas.values(), *file.symbols.values()]
+    nodes = [part for node in whole for _path, part in tree.nodes(node)]
+    numbers = [abs(float(part.value)) for part in nodes if part.op == "num"]
+    names = {str(part.value) for part in nodes if part.op == "sym"}
+    if all(_MOVES.fullmatch(name) for name in names):
+        return remark
+    near = [(n, v) for n, v in pairs if any(abs(x - float(v)) <= 1e-3 * x for x in numbers)]
+    return "".join(only_for([f"{name} = {value}" for name, value in near]))
 
 
 def _as_read(file: FormulaFile) -> tuple[tuple[str, str], ...]:

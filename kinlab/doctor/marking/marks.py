@@ -7,7 +7,7 @@ import html
 import math
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, TypeVar
 
@@ -120,6 +120,9 @@ class Mark(Told):
         note: what a person should look at.
         slug: what its page and results are called.
         pictures: question id to its formulas as MathML, for the page.
+        aside: what is said of how it was read and run; nobody has to look at it.
+        unread: why nothing of it could be read.
+        stranger: that its student is in no list of ids, where there is one.
     """
 
     file: str
@@ -129,6 +132,9 @@ class Mark(Told):
     note: str = ""
     slug: str = ""
     pictures: Mapping[str, tuple[str, ...]] | None = None
+    aside: str = ""
+    unread: str = ""
+    stranger: str = ""
 
     @property
     def total(self) -> float:
@@ -163,13 +169,15 @@ class Marks:
 
     Attributes:
         sheet: with which it was marked.
-        marks: one for each submission, in the order of the students' ids.
+        marks: one for each student, in the order of their ids.
         feedback: how much is told.
+        not_read: files beside the submissions that are of another kind.
     """
 
     sheet: Sheet
     marks: tuple[Mark, ...]
     feedback: str
+    not_read: tuple[str, ...] = ()
 
     def __getitem__(self, student: str) -> Mark:
         return _called("student", student, {mark.student: mark for mark in self.marks[::-1]})
@@ -183,9 +191,18 @@ class Marks:
             (outcome.question, kind)
             for mark in self.marks
             for outcome in mark.outcomes
-            if not outcome.right
+            if not outcome.right and outcome.verdict != UNREAD
             for kind in dict.fromkeys(outcome.kinds)
         )
+
+    def said(self) -> list[str]:
+        """What a teacher should hear at once: files that are not read, and why."""
+        lines = [mark.stranger for mark in self.marks if mark.stranger]
+        lines += [mark.unread for mark in self.marks if mark.unread]
+        if self.not_read:
+            said = _("not read: {names}").format(names=several(self.not_read))
+            lines.insert(0, said)
+        return lines
 
     def __str__(self) -> str:
         return _("{title}: {summary}").format(title=self.sheet.title, summary=self.summary)
@@ -196,7 +213,9 @@ class Marks:
         if not self.marks:
             return _("no submissions")
         mean = math.fsum(mark.total for mark in self.marks) / len(self.marks)
-        unread = sum(one.verdict == UNREAD for m in self.marks for one in m.outcomes)
+        unread = sum(
+            one.verdict == UNREAD for m in self.marks if not m.unread for one in m.outcomes
+        )
         text = ngettext(
             "{count} submission, mean {mean:.2f} of {of:g} points",
             "{count} submissions, mean {mean:.2f} of {of:g} points",
@@ -216,6 +235,22 @@ class Marks:
             for m in self.marks
         )
         return f"<p><b>{html.escape(str(self))}</b></p><table>{rows}</table>"
+
+
+def several(names: Sequence[str], most: int = 20) -> str:
+    """Names in a line, and how many more there are.
+
+    Args:
+        names: to be told.
+        most: how many are.
+    """
+    told = _(", ").join(names[:most])
+    left = len(names) - most
+    if left <= 0:
+        return told
+    return ngettext("{names} and {count} more", "{names} and {count} more", left).format(
+        names=told, count=left
+    )
 
 
 T = TypeVar("T")

@@ -23,10 +23,11 @@ from kinlab.doctor.text.line import Names
 from kinlab.doctor.text.stand_ins import bare_number, stand_ins
 from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import holds_with_other_numbers
-from kinlab.errors import ExpressionError, KinlabError, near
+from kinlab.errors import ExpressionError, KinlabError
 from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree
 from kinlab.formulas.files import FormulaFile, formula_file
+from kinlab.formulas.signs.refusals import near_names
 from kinlab.formulas.text import canonical
 from kinlab.formulas.tree import Node
 from kinlab.formulas.typeset import equation
@@ -97,12 +98,16 @@ def check_answers(sheet: Sheet) -> None:
             place, opened = f"{sheet.place}: {question.id}: answer", _opened(node, model, entry)
             for name in sorted(tree.names(opened) - own):
                 if _plain(name) not in told:
-                    raise SheetError(
-                        f"{place}: {sheet.robot.name} has no {name!r}; {near(name, sorted(own))} "
-                        f"(a name of the question's own must stand in its text)"
+                    said = _(
+                        "{robot} has no {name}; {choices} (a name of the question's own must stand "
+                        "in its text)"
                     )
+                    fields = {"robot": sheet.robot.name, "name": repr(name)}
+                    choices = near_names(name, sorted(own))
+                    raise SheetError(f"{place}: {said.format(**fields, choices=choices)}")
             if not np.isfinite(_values(opened, _states(tree.names(opened), words))).any():
-                raise SheetError(f"{place}: {entry} = {node} is no number at any state")
+                said = _("{entry} = {formula} is no number at any state")
+                raise SheetError(f"{place}: {said.format(entry=entry, formula=node)}")
 
 
 def _plain(text: str) -> str:
@@ -164,12 +169,13 @@ class _Beside:
         # what is multiplied by zero is in the text alone
         strange = sorted(tree.names(self.mine) - known) or self.text.foreign(known)
         if strange:
-            said = _("{entry}: {name!r} is unknown; give it a meaning in [symbols]")
+            said = _("{entry}: {name!r} is unknown; explain it on a line of its own")
             raise ExpressionError(said.format(entry=self.name, name=strange[0][:40]))
         with np.errstate(all="ignore"):
             there = np.isfinite(_values(self.theirs, at))
             if not there.any():
-                raise SheetError(f"{self.name}: the sheet's own answer has no value at any state")
+                said = _("{entry}: the sheet's own answer has no value at any state")
+                raise SheetError(said.format(entry=self.name))
             at = {one: stack[there] for one, stack in at.items()}
             hand, truth = _values(self.mine, at), _values(self.theirs, at)
             if float(np.max(relative_errors(hand, truth))) <= self.tolerance:

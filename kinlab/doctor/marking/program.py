@@ -12,6 +12,7 @@ from __future__ import annotations
 import json
 import os
 import pickle
+import re
 import select
 import subprocess
 import sys
@@ -19,7 +20,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import IO, Any
@@ -29,7 +30,7 @@ import numpy as np
 from kinlab.check.diagnosis import Cause
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.check.quantities.registry import split_name
-from kinlab.doctor.marking.judge import of_values, states_of
+from kinlab.doctor.marking.judge import judge, of_values, states_of
 from kinlab.doctor.marking.marks import Outcome, lost, missing
 from kinlab.doctor.marking.sheet import Question, Sheet
 from kinlab.doctor.marking.submission import Submission
@@ -42,6 +43,10 @@ SECONDS = 10.0
 """Processor and clock time of one program."""
 
 MEGABYTES = 1024
+_STARTS, _LATE = 12, 3
+"""Processes of one program, and how many of them may take all of their time."""
+_QUOTED = r"(?:[rR]?([\"'])([^\"'\n]+)\1|(-?[\d.]+))"
+_DONE = b'{"done": true}\n'
 _LARGEST = 8 << 20
 
 
@@ -49,7 +54,14 @@ def judge_program(sheet: Sheet, submission: Submission, level: str) -> tuple[lis
     """The outcomes of a Python file, and what the system enforced while it ran.
 
     A question is answered by the function called as its id or its entry, which takes one state:
-    the quantity's arguments in order. One with an answer of the sheet's own has none.
+    the quantity's arguments in order. One with an answer of the sheet's own has none. The functions
+    are asked one after the other; one that does not come back, or ends the process, costs its own
+    question, and the others are asked in a new process.
+
+    Args:
+        sheet: what is asked.
+        submission: with the program.
+        level: of feedback.
     """
     asked = [question for question in sheet.questions if question.quantity]
     states = {q.id: states_of(sheet, q, submission.student) for q in asked}
@@ -57,27 +69,51 @@ def judge_program(sheet: Sheet, submission: Submission, level: str) -> tuple[lis
         [q.id, [q.id, q.entry], list(find_quantity(split_name(q.quantity)[0]).arguments)]
         for q in asked
     ]
-    request = {
-        "program": submission.program,
-        "wanted": wanted,
-        "arguments": {k: {n: v.tolist() for n, v in s.items()} for k, s in states.items()},
-        "seconds": SECONDS,
-        "megabytes": MEGABYTES,
-    }
-    reply, enforced = _run(json.dumps(request))
-    found = reply.get("answers")
+    arguments = {k: {n: v.tolist() for n, v in s.items()} for k, s in states.items()}
+    ran = _run(submission.program, wanted, arguments)
     outcomes = []
     for question in sheet.questions:
-        if not isinstance(found, dict):
-            outcomes.append(lost(question, str(reply.get("error", _("no answer")))[:200]))
-        elif question.answer:
-            said = _("a program is not asked for this; hand in the formula in a text file")
-            outcomes.append(replace(missing(question), remark=said))
-        elif question.id not in found:
-            outcomes.append(missing(question))
+        found = ran.answers.get(question.id, {})
+        if question.answer:
+            outcomes.append(_as_text(sheet, question, submission, level))
+        elif "error" in found or (ran.error and "values" not in found):
+            error = found.get("error", ran.error)
+            said = in_words(str(error), submission.program)
+            outcomes.append(lost(question, f"{question.id}: {said}" if found else said))
+        elif "values" not in found:
+            outcomes.append(replace(missing(question), remark=_no_function(question, ran)))
         else:
-            outcomes.append(_of(sheet, question, submission, found[question.id], level))
-    return outcomes, _("run with limits of: {limits}").format(limits=enforced or _("time"))
+            outcomes.append(_of(sheet, question, submission, found, level))
+    limits = _("run with limits of: {limits}").format(limits=ran.enforced or _("time"))
+    return outcomes, limits
+
+
+def _as_text(sheet: Sheet, question: Question, submission: Submission, level: str) -> Outcome:
+    """The outcome of a question that no function answers: by a line such as q3 = "-k*q1".
+
+    The line is read and not run.
+    """
+    line = rf"^{re.escape(question.id)}[ \t]*=[ \t]*{_QUOTED}[ \t]*(?:#.*)?$"
+    found = re.search(line, submission.program, re.MULTILINE)
+    if found is not None:
+        answers = {question.id: {"": found[2] or found[3]}}
+        alone = replace(sheet, questions=(question,))
+        return judge(alone, replace(submission, answers=answers), level)[0]
+    said = _(
+        'no function is asked for this; write a line {question} = "formula", or hand in a second '
+        "file, such as {file}, with the line {question}: formula"
+    )
+    said = said.format(question=question.id, file=f"{Path(submission.file).stem}.txt")
+    return replace(missing(question), remark=said)
+
+
+def _no_function(question: Question, ran: _Ran) -> str:
+    """Which functions there are, where the one for a question is not among them."""
+    if not ran.functions:
+        return ""
+    names = ", ".join(dict.fromkeys((question.id, question.entry)))
+    said = _("no function is called {names}; there are: {functions}")
+    return said.format(names=names, functions=", ".join(ran.functions[:6]))
 
 
 _LIMITS = (
@@ -97,8 +133,6 @@ def _of(
     sheet: Sheet, question: Question, submission: Submission, found: Any, level: str
 ) -> Outcome:
     try:
-        if "error" in found:
-            return lost(question, f"{question.id}: {str(found['error'])[:200]}")
         values = np.array(found["values"], dtype=float).reshape([int(k) for k in found["shape"]])
         asked = partial(_ask, submission.program, [question.id, question.entry])
         lines = partial(lines_elsewhere, asked)
@@ -107,22 +141,66 @@ def _of(
         return lost(question, f"{question.id}: {str(problem)[:200]}")
 
 
-def _run(request: str) -> tuple[dict[str, Any], str]:
-    """What the process answered, or how it ended, and what the system enforced."""
+@dataclass
+class _Ran:
+    """What came of a program.
+
+    Attributes:
+        answers: question to values and shape, or to an error; empty where there is no function.
+        functions: that it defines.
+        error: how its lines outside of functions ended, where too soon.
+        enforced: what the system limited.
+    """
+
+    answers: dict[str, dict[str, Any]] = field(default_factory=dict)
+    functions: list[str] = field(default_factory=list)
+    error: str = ""
+    enforced: str = ""
+
+
+def _run(program: str, wanted: list[Any], arguments: dict[str, Any]) -> _Ran:
+    """What the processes answered: one, and another after each that came to an early end."""
+    ran, waiting, late = _Ran(), list(wanted), 0
+    request = {"program": program, "seconds": SECONDS, "megabytes": MEGABYTES}
+    for _start in range(_STARTS):
+        begun = time.monotonic()
+        names = [question for question, *_rest in waiting]
+        asked = {k: v for k, v in arguments.items() if k in names}
+        lines, ending = _told(json.dumps({**request, "wanted": waiting, "arguments": asked}))
+        late += time.monotonic() - begun > SECONDS / 2
+        limits = lines.pop(0) if lines else []
+        known = [part for part in limits if part in _LIMITS] if isinstance(limits, list) else []
+        ran.enforced = _(", ").join(_(limit) for limit in known) or ran.enforced
+        said = lines.pop(0) if lines else None
+        if not isinstance(said, dict) or not isinstance(said.get("functions"), list):
+            ran.error = ran.error or ending or _("no answer")
+            return ran
+        ran.functions = [str(name)[:40] for name in said["functions"][:20]]
+        ran.error = str(said.get("error", ""))[:200]
+        for one in lines:
+            if isinstance(one, dict) and waiting and one.get("question") == waiting[0][0]:
+                ran.answers[waiting.pop(0)[0]] = one
+        if not waiting or not ending:
+            break
+        ran.answers[waiting.pop(0)[0]] = {"error": ending}
+        if late >= _LATE:
+            break
+    for question, *_rest in waiting:
+        ran.answers.setdefault(question, {"error": _("not asked: the program used up its time")})
+    return ran
+
+
+def _told(request: str) -> tuple[list[Any], str]:
+    """The lines that a process wrote, and how it ended where that was too soon or too late."""
     with _confined("child.py") as (process, requests, reading):
         try:
             requests.write(request.encode() + b"\n")
             requests.close()
         except BrokenPipeError:
-            return {"error": _("its process did not start")}, ""
-        content, ending = _received(reading, process, 2)
-    first, _newline, rest = content.decode("utf-8", "replace").partition("\n")
-    limits, reply = _line(first), _line(rest)
-    known = [part for part in limits if part in _LIMITS] if isinstance(limits, list) else []
-    enforced = _(", ").join(_(limit) for limit in known)
-    if ending or not isinstance(reply, dict):
-        reply = {"error": ending or _("no answer")}
-    return reply, enforced
+            return [], _("its process did not start")
+        content, ending = _received(reading, process, None)
+    whole = content.decode("utf-8", "replace").split("\n")[:-1]
+    return [_line(line) for line in whole], ending
 
 
 def _ask(
@@ -192,11 +270,19 @@ def _line(text: str) -> Any:
         return None
 
 
-def _received(reading: int, process: subprocess.Popen[bytes], lines: int) -> tuple[bytes, str]:
-    """What came, and how it ended where that was too soon or too late."""
+def _received(
+    reading: int, process: subprocess.Popen[bytes], lines: int | None
+) -> tuple[bytes, str]:
+    """What came, and how it ended where that was too soon or too late.
+
+    Args:
+        reading: the descriptor.
+        process: that writes.
+        lines: how many are awaited; None: until it says that it is done.
+    """
     until = time.monotonic() + SECONDS + 5.0
     content = b""
-    while content.count(b"\n") < lines:
+    while content.count(b"\n") < lines if lines else not content.endswith(_DONE):
         left = until - time.monotonic()
         if left <= 0 or not select.select([reading], [], [], left)[0]:
             late = _("did not come back within {seconds:g} s")
@@ -213,3 +299,41 @@ def _received(reading: int, process: subprocess.Popen[bytes], lines: int) -> tup
         if len(content) > _LARGEST:
             return content, _("answered with more than 8 MB")
     return content, ""
+
+
+# -------- What went wrong, in words
+
+_REFUSED = (
+    (r"a submission may not import ([\w.]+)", N_("a submission may not import {name}")),
+    (r"a submission may not read folders", N_("a submission may not read folders")),
+    (r"a submission may not read files", N_("a submission may not read files")),
+    (r"a submission may not write files", N_("a submission may not write files")),
+    (r"a submission may not use ([\w.]+)", N_("a submission may not use {name}")),
+    (r"the answer is too large", N_("the answer is too large")),
+    (r"SystemExit.*", N_("SystemExit: it ends the program; delete exit() or sys.exit()")),
+)
+"""What the process says in English."""
+_IMPORT = re.compile(r"^[ \t]*(?:import|from)[ \t]+([A-Za-z_]\w*)", re.MULTILINE)
+
+
+def in_words(error: str, program: str) -> str:
+    """What a program's error is, and what its writer should do.
+
+    Args:
+        error: as the process told it.
+        program: the text.
+    """
+    if error.startswith(("ImportError", "ModuleNotFoundError", "PermissionError")):
+        known = {*sys.stdlib_module_names, "numpy"}
+        others = [name for name in _IMPORT.findall(program) if name not in known]
+        if others and others[0] != "kinlab":
+            said = _(
+                "the program imports {module}, and only numpy and the standard library are here; "
+                "delete that line and what uses it, such as figures, and hand the file in again"
+            )
+            return said.format(module=others[0][:40])
+    for pattern, sentence in _REFUSED:
+        found = re.search(pattern, error)
+        if found:
+            return _(sentence).format(name=found[1] if found.re.groups else "")
+    return error[:200]

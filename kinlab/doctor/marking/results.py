@@ -2,7 +2,7 @@
 
 ::
 
-    marks/marks.csv            one row for each submission
+    marks/marks.csv            one row for each student; UTF-8 with a mark in front, for Excel
     marks/class.html           for the teacher: which slips, how often, who
     marks/students/ada.html    for the student
     marks/results/ada.json     the same as Gradescope reads it (results.json of an autograder)
@@ -19,6 +19,7 @@ from typing import Any
 
 from kinlab.doctor.marking.marks import Mark, Marks, Outcome
 from kinlab.doctor.marking.pages import class_page, student_page
+from kinlab.doctor.marking.submission import joined
 from kinlab.errors import FileError
 from kinlab.host.files import write_text
 from kinlab.host.language import _
@@ -42,12 +43,12 @@ def write_marks(marks: Marks, folder: Path) -> None:
         write_text(folder / "students" / f"{mark.slug}.html", student_page(marks, mark))
         text = json.dumps(gradescope(marks, mark), indent=1, ensure_ascii=False, allow_nan=False)
         write_text(folder / "results" / f"{mark.slug}.json", text + "\n")
-    write_text(folder / "marks.csv", as_csv(marks))
+    write_text(folder / "marks.csv", "\ufeff" + as_csv(marks))  # by which Excel knows UTF-8
     write_text(folder / "class.html", class_page(marks))
 
 
 def as_csv(marks: Marks) -> str:
-    """One row for each submission; no cell that a spreadsheet would run."""
+    """One row for each student; no cell that a spreadsheet would run."""
     ids = [question.id for question in marks.sheet.questions]
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
@@ -59,7 +60,7 @@ def as_csv(marks: Marks) -> str:
         row += [f"{mark.total:g}", f"{mark.of:g}"]
         row += [f"{outcome.points:g}" for outcome in mark.outcomes]
         row += [outcome.verdict for outcome in mark.outcomes]
-        writer.writerow([*row, _cell(mark.note)])
+        writer.writerow([*row, _cell(joined(mark.note, mark.unread, mark.aside))])
     return stream.getvalue()
 
 
@@ -78,7 +79,7 @@ def gradescope(marks: Marks, mark: Mark) -> dict[str, Any]:
             "score": outcome.points,
             "max_score": outcome.of,
             "status": "passed" if outcome.right else "failed",
-            "output": told(outcome),
+            "output": told(outcome, bool(mark.unread)),
             "output_format": "text",
             "visibility": "visible",
         }
@@ -86,7 +87,7 @@ def gradescope(marks: Marks, mark: Mark) -> dict[str, Any]:
     ]
     return {
         "score": mark.total,
-        "output": mark.note,
+        "output": joined(mark.note, mark.unread),
         "output_format": "text",
         "visibility": "visible",
         "stdout_visibility": "hidden",
@@ -94,13 +95,18 @@ def gradescope(marks: Marks, mark: Mark) -> dict[str, Any]:
     }
 
 
-def told(outcome: Outcome) -> str:
-    """An outcome in a few lines, as much as its feedback lets through."""
+def told(outcome: Outcome, unread: bool = False) -> str:
+    """An outcome in a few lines, as much as its feedback lets through.
+
+    Args:
+        outcome: of one question.
+        unread: whether the whole file could not be read, which is said once, of the file.
+    """
     verdict = _(outcome.verdict)
     lines = [_("{verdict}.").format(verdict=verdict[:1].upper() + verdict[1:])]
     if outcome.place:
         lines.append(_("Place: {place}.").format(place=outcome.place))
     if outcome.cause:
         lines.append(_("Kind: {kind}.").format(kind=outcome.cause))
-    lines += [*outcome.answer, outcome.remark]
+    lines += [*outcome.answer, "" if unread else outcome.remark]
     return "\n".join(line for line in lines if line)

@@ -18,16 +18,26 @@ from pathlib import Path
 from typing import Any
 
 from kinlab.arrays import shown, whole, word
+from kinlab.doctor.marking.handout import students_of
 from kinlab.doctor.marking.judge import judge
 from kinlab.doctor.marking.marks import Mark, Marks, Outcome, lost, slug_of
 from kinlab.doctor.marking.own_answer import check_answers
+from kinlab.doctor.marking.pages import pictures_of
 from kinlab.doctor.marking.program import judge_program
 from kinlab.doctor.marking.results import write_marks
 from kinlab.doctor.marking.sheet import FEEDBACK, Sheet, SheetError, read_sheet, sheet_of
-from kinlab.doctor.marking.submission import Submission, found_in, of_document, read_submission
+from kinlab.doctor.marking.students import by_student, not_read, with_not_read, with_strangers
+from kinlab.doctor.marking.submission import (
+    Submission,
+    found_in,
+    joined,
+    of_document,
+    read_submission,
+    safe,
+    student_of,
+)
 from kinlab.errors import FileError, KinlabError
 from kinlab.fivebar import FiveBar
-from kinlab.formulas.typeset import mathml
 from kinlab.host.files import write_text
 from kinlab.host.language import _, language
 from kinlab.host.processes import end_with_parent
@@ -38,6 +48,8 @@ SECONDS = 90.0
 
 _MEMORY = 6 << 30
 _RECORDS = ".records"
+_FORM = 2
+"""Of what is kept of a run; one in another form is not gone on with."""
 
 
 def mark(
@@ -73,6 +85,7 @@ def mark(
     """
     read = _sheet(sheet)
     check_answers(read)
+    known = students_of(read.variation.ids) if read.variation and read.variation.ids else []
     level = read.feedback if feedback is None else word(feedback, FEEDBACK, "feedback")
     if output is not None and not isinstance(output, (str, Path)):
         raise FileError(f"output is {shown(output)}; give a folder")
@@ -81,7 +94,9 @@ def mark(
         done = [_of_mapping(read, who, given, level) for who, given in submissions.items()]
     else:
         done = _of_files(read, submissions, output, level, run_python, count, progress)
-    marks = Marks(read, tuple(_with_notes(done)), level)
+    others = not_read(submissions) if isinstance(submissions, (str, Path)) else []
+    students = with_strangers(with_not_read(by_student(done), others), known)
+    marks = Marks(read, tuple(students), level, tuple(others))
     if output is not None:
         write_marks(marks, Path(output))
     return marks
@@ -107,7 +122,7 @@ def _of_mapping(sheet: Sheet, student: Any, given: Mapping[str, Any], level: str
     except KinlabError as problem:
         return _unread(sheet, who, who, str(problem), slug_of(who))
     outcomes = tuple(judge(sheet, submission, level))
-    return _finished(who, submission, outcomes, submission.note, slug_of(who))
+    return _finished(who, submission, outcomes, slug_of(who))
 
 
 def _paths(submissions: Any) -> list[Path]:
@@ -176,7 +191,7 @@ class _Work:
         settings = (self.level, self.run_python, language())
         robot = self.sheet.robot
         numbers = robot.values() if isinstance(robot, FiveBar) else robot.urdf
-        parts = (VERSION, self.sheet.text, str(numbers), *settings)
+        parts = (VERSION, _FORM, self.sheet.text, str(numbers), *settings)
         digest.update(repr(parts).encode())
         with contextlib.suppress(OSError):
             if path.is_file() and not path.is_symlink() and path.stat().st_size < 1 << 20:
@@ -186,57 +201,35 @@ class _Work:
     def mark(self, path: Path) -> Mark:
         """Marks one; whatever is wrong with it is in its mark."""
         shown, slug = self.shown(path), self.slug(path)
+        who = student_of(path, self.root)
         try:
             submission = read_submission(path, self.sheet, self.root)
-            note = submission.note
+            who = submission.student
             if not submission.program:
                 outcomes = judge(self.sheet, submission, self.level)
             elif self.run_python:
                 outcomes, limits = judge_program(self.sheet, submission, self.level)
-                note = _("; ").join(part for part in (note, limits) if part)
+                submission = replace(submission, aside=joined(submission.aside, limits))
             else:
                 said = _("{file}: a Python file; it is run only with --run-python")
                 raise FileError(said.format(file=shown))
-            return _finished(shown, submission, tuple(outcomes), note, slug)
+            return _finished(shown, submission, tuple(outcomes), slug)
         except KinlabError as problem:
-            return _unread(self.sheet, shown, path.stem, str(problem), slug)
+            return _unread(self.sheet, shown, who, str(problem), slug)
         except Exception as problem:  # noqa: BLE001  as in judge
-            reason = f"{shown}: {type(problem).__name__}"
-            return _unread(self.sheet, shown, path.stem, reason, slug)
+            return _unread(self.sheet, shown, who, f"{shown}: {type(problem).__name__}", slug)
 
 
-def _finished(
-    file: str, submission: Submission, outcomes: tuple[Outcome, ...], note: str, slug: str
-) -> Mark:
-    pictures = {
-        one.question: tuple(mathml(f"{name} = {latex}") for name, latex in one.formulas)
-        for one in outcomes
-    }
-    return Mark(file, submission.student, submission.name, outcomes, note, slug, pictures)
+def _finished(file: str, submission: Submission, outcomes: tuple[Outcome, ...], slug: str) -> Mark:
+    pictures = {one.question: pictures_of(one.formulas) for one in outcomes}
+    who, notes = (submission.student, submission.name), (submission.note, submission.aside)
+    return Mark(file, *who, outcomes, notes[0], slug, pictures, notes[1])
 
 
 def _unread(sheet: Sheet, file: str, student: str, reason: str, slug: str) -> Mark:
     outcomes = tuple(lost(question, reason) for question in sheet.questions)
     note = _("the submission could not be read")
-    return Mark(file, student[:64], "", outcomes, note, slug)
-
-
-def _with_notes(marks: Iterable[Mark]) -> list[Mark]:
-    """In the order of the students, with a note where one handed in twice."""
-    ordered = sorted(marks, key=lambda m: (m.student.casefold(), m.file))
-    files: dict[str, list[str]] = {}
-    for one in ordered:
-        files.setdefault(one.student.casefold(), []).append(one.file)
-    result = []
-    for one in ordered:
-        same = files[one.student.casefold()]
-        if len(same) > 1:
-            twice = _("handed in {count} times: {files}").format(
-                count=len(same), files=_(", ").join(sorted(same)[:5])
-            )
-            one = replace(one, note=_("; ").join(part for part in (one.note, twice) if part))
-        result.append(one)
-    return result
+    return Mark(file, safe(student), "", outcomes, note, slug, unread=reason)
 
 
 # -------- What is kept of a run
@@ -251,6 +244,8 @@ def _as_record(mark_: Mark) -> dict[str, Any]:
         "note": mark_.note,
         "slug": mark_.slug,
         "pictures": pictures,
+        "aside": mark_.aside,
+        "unread": mark_.unread,
         "outcomes": [outcome.as_dict() for outcome in mark_.outcomes],
     }
 
@@ -356,7 +351,8 @@ class _Worker:
         shown = self._work.shown(path)
         slug = self._work.slug(path)
         reason = reason.format(file=shown, seconds=SECONDS)
-        return _unread(self._work.sheet, shown, path.stem, reason, slug)
+        who = student_of(path, self._work.root)
+        return _unread(self._work.sheet, shown, who, reason, slug)
 
     def end(self) -> None:
         self._process.kill()

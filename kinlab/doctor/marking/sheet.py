@@ -12,6 +12,7 @@ A sheet is a TOML file::
     [variation]                   # every student gets numbers of his own
     seed = 3
     spread = 0.2                  # up to 20 % up and down
+    ids = "ids.txt"               # the students' ids, beside the sheet: a mistyped one is told
 
     [[questions]]
     id = "q1"
@@ -40,10 +41,12 @@ from kinlab.doctor.examine import prepare
 from kinlab.doctor.linkages.mechanisms import domain_of, mechanism_beside
 from kinlab.doctor.marking.words import KINDS
 from kinlab.doctor.text.claims import claimed_of, whole_claimed
-from kinlab.errors import FileError, KinlabError, near
+from kinlab.errors import FileError, KinlabError
 from kinlab.fivebar import FiveBar
+from kinlab.formulas.signs.refusals import near_names
 from kinlab.formulas.typed import entry_name
 from kinlab.host.files import read_text, read_toml
+from kinlab.host.language import _
 
 FEEDBACK = ("verdict", "place", "cause", "answer")
 """How much a student is told, from little to all."""
@@ -98,11 +101,13 @@ class Variation:
         seed: with the student's id it gives the numbers.
         names: which ones, such as ``l1``; empty: all but gravity.
         spread: share by which they go up or down.
+        ids: a file of the students' ids, by which a mistyped one is seen; empty: none is named.
     """
 
     seed: int
     names: tuple[str, ...] = ()
     spread: float = 0.2
+    ids: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,6 +138,19 @@ class Sheet:
         return math.fsum(question.points for question in self.questions)
 
 
+def _refused(place: str, sentence: str, **fields: Any) -> SheetError:
+    return SheetError(f"{place}: {sentence.format(**fields)}")
+
+
+def _typed(value: Any) -> str:
+    """What stands in the sheet, for people: as TOML has it."""
+    if value is None:
+        return _("missing")
+    if isinstance(value, bool):
+        return str(value).lower()
+    return repr(value)[:40]
+
+
 def read_sheet(path: str | Path) -> Sheet:
     """Reads a sheet.
 
@@ -151,22 +169,24 @@ def sheet_of(document: Mapping[str, Any], place: str, text: str = "") -> Sheet:
     robot = _robot(document, place)
     feedback = document.get("feedback", "place")
     if not isinstance(feedback, str) or feedback not in FEEDBACK:
-        raise SheetError(f"{place}: feedback is {feedback!r}; {near(str(feedback), FEEDBACK)}")
+        said = _("feedback is {value}; {choices}")
+        choices = near_names(str(feedback), FEEDBACK)
+        raise _refused(place, said, value=repr(feedback), choices=choices)
     slips = _slips(document.get("slips", {}), f"{place}: [slips]")
     rows = document.get("questions")
     if not isinstance(rows, list) or not rows or not all(isinstance(row, dict) for row in rows):
-        raise SheetError(f"{place}: questions are missing; write [[questions]] for each")
+        raise _refused(place, _("questions are missing; write [[questions]] for each"))
     if len(rows) > _QUESTIONS:
-        raise SheetError(f"{place}: {len(rows)} questions; at most {_QUESTIONS}")
+        said = _("{count} questions; at most {most}")
+        raise _refused(place, said, count=len(rows), most=_QUESTIONS)
     questions = tuple(
         _question(row, robot, slips, f"{place}: question {k}") for k, row in enumerate(rows, 1)
     )
     taken: set[str] = set()
     for question in questions:
         if question.id.lower() in taken:
-            raise SheetError(
-                f"{place}: two questions have the id {question.id!r}; give each its own"
-            )
+            said = _("two questions have the id {id}; give each its own")
+            raise _refused(place, said, id=repr(question.id))
         taken.add(question.id.lower())
     title = _text(document, "title", place) or "Marks"
     return Sheet(
@@ -175,7 +195,7 @@ def sheet_of(document: Mapping[str, Any], place: str, text: str = "") -> Sheet:
         robot,
         feedback,
         questions,
-        _variation(document.get("variation"), robot, f"{place}: [variation]"),
+        _variation(document.get("variation"), robot, f"{place}: [variation]", Path(place).parent),
         _whole(document, "samples", 60, 10, 1000, place),
         _whole(document, "seed", 0, 0, 2**31, place),
         text,
@@ -185,11 +205,11 @@ def sheet_of(document: Mapping[str, Any], place: str, text: str = "") -> Sheet:
 def _robot(document: Mapping[str, Any], place: str) -> Mechanism:
     name = document.get("robot")
     if not isinstance(name, str) or not name:
-        raise SheetError(f'{place}: robot is missing; write robot = "planar2r" or a path')
+        raise _refused(place, _('robot is missing; write robot = "planar2r" or a path'))
     try:
         return mechanism_beside(name, place)
     except KinlabError as problem:
-        raise SheetError(f"{place}: robot: {problem}") from None
+        raise _refused(place, _("robot: {problem}"), problem=problem) from None
 
 
 def _question(
@@ -198,14 +218,17 @@ def _question(
     _refuse_unknown(row, _QUESTION, place)
     name = row.get("id")
     if not isinstance(name, str) or not _ID.fullmatch(name):
-        raise SheetError(f'{place}: id is {name!r}; write a short word such as id = "q1"')
+        said = _(
+            'id is {value}; write id = "q1": a letter, then letters, digits, _ and -, 32 at most'
+        )
+        raise _refused(place, said, value=_typed(name))
     place = f"{place} ({name})"
     given = [key for key in ("quantity", "answer") if key in row]
     if len(given) == 2:
-        raise SheetError(f"{place}: quantity and answer are both given; keep one")
+        raise _refused(place, _("quantity and answer are both given; keep one"))
     entry = _text(row, "entry", place)
     if not given and not entry:
-        raise SheetError(f'{place}: what is asked? write entry = "tau1", quantity or answer')
+        raise _refused(place, _('what is asked? write entry = "tau1", quantity or answer'))
     try:
         entry = entry_name(entry, place) if entry else entry
         if given == ["answer"]:
@@ -217,7 +240,7 @@ def _question(
         raise SheetError(str(problem) if place in str(problem) else f"{place}: {problem}") from None
     points = _number(row, "points", 1.0, place)
     if points > 1e4:
-        raise SheetError(f"{place}: points is {points:g}; at most 10000")
+        raise _refused(place, _("points is {value:g}; at most 10000"), value=points)
     return Question(
         name,
         _text(row, "text", place) or _text(row, "title", place) or entry or quantity,
@@ -237,10 +260,11 @@ def _require_own(entry: str, robot: Mechanism, place: str) -> None:
     except KinlabError:
         return
     if known:
-        raise SheetError(
-            f"{place}: entry {entry!r} is {known}, which is compared with the engine, and answer "
-            f"is given too; keep one (with an answer, entry is a name of its own, such as F)"
+        said = _(
+            "entry {entry} is {known}, which is compared with the engine, and answer is given too; "
+            "keep one (with an answer, entry is a name of its own, such as F)"
         )
+        raise _refused(place, said, entry=repr(entry), known=known)
 
 
 def _asked(row: Mapping[str, Any], entry: str, robot: Mechanism, place: str) -> str:
@@ -249,14 +273,21 @@ def _asked(row: Mapping[str, Any], entry: str, robot: Mechanism, place: str) -> 
         quantity = whole_claimed(entry, robot) or claimed_of(entry, robot)
     plain, index = split_name(quantity)
     if any(isinstance(k, slice) for k in index):
-        raise SheetError(f"{place}: {quantity} is a range; ask for one entry, or for all")
+        said = _("{quantity} is a range; ask for one entry, or for all")
+        raise _refused(place, said, quantity=quantity)
     if find_quantity(plain).domain is not domain_of(robot):
-        raise SheetError(f"{place}: {plain} is no quantity of {robot.name}; give an answer")
+        said = _("{quantity} is no quantity of {robot}; give an answer")
+        raise _refused(place, said, quantity=plain, robot=robot.name)
     try:
         prepare(robot, plain, index, 10, 0)
     except IndexError:
-        kind = "" if isinstance(robot, FiveBar) else f" of {robot.n} joints"
-        raise SheetError(f"{place}: {robot.name}{kind} has no {entry or quantity}") from None
+        asked = entry or quantity
+        if isinstance(robot, FiveBar):
+            said = _("{robot} has no {entry}").format(robot=robot.name, entry=asked)
+        else:
+            said = _("{robot} of {count} joints has no {entry}")
+            said = said.format(robot=robot.name, count=robot.n, entry=asked)
+        raise SheetError(f"{place}: {said}") from None
     return quantity
 
 
@@ -269,64 +300,76 @@ def _answers(value: Any, entry: str, place: str) -> dict[str, str]:
         return {entry: value}
     if isinstance(value, dict) and value and all(isinstance(v, str) for v in value.values()):
         return dict(value)
-    raise SheetError(f"{place}: answer is {type(value).__name__}; write the formula as text")
+    said = _("answer is {value}; write the formula as text")
+    raise _refused(place, said, value=_typed(value))
 
 
 def _slips(value: Any, place: str) -> dict[str, float]:
     if not isinstance(value, dict):
-        raise SheetError(f"{place}: {type(value).__name__}; write kinds and shares: sign = 0.25")
+        raise _refused(place, _("write kinds of slips and shares: sign = 0.25"))
     costs: dict[str, float] = {}
     for kind, cost in value.items():
         if kind not in KINDS:
-            raise SheetError(f"{place}: {kind!r} is no kind of slip; {near(kind, KINDS)}")
+            said, choices = _("{kind} is no kind of slip; {choices}"), near_names(kind, KINDS)
+            raise _refused(place, said, kind=repr(kind), choices=choices)
         if isinstance(cost, bool) or not isinstance(cost, (int, float)) or not 0 <= cost <= 1:
-            raise SheetError(f"{place}: {kind} = {cost!r}; a share of the points, from 0 to 1")
+            said = _("{kind} = {value}; a share of the points, from 0 to 1")
+            raise _refused(place, said, kind=kind, value=repr(cost))
         costs[kind] = float(cost)
     return costs
 
 
-def _variation(value: Any, robot: Mechanism, place: str) -> Variation | None:
+def _variation(value: Any, robot: Mechanism, place: str, beside: Path) -> Variation | None:
     if value is None:
         return None
     if not isinstance(value, dict):
-        raise SheetError(f"{place}: {type(value).__name__}; write seed and spread")
-    _refuse_unknown(value, ("seed", "names", "spread"), place)
+        raise _refused(place, _("write seed and spread"))
+    _refuse_unknown(value, ("seed", "names", "spread", "ids"), place)
     if isinstance(robot, FiveBar) or robot.table is None:
-        raise SheetError(f"{place}: {robot.name} has no DH table; only such a robot can be varied")
+        said = _("{robot} has no DH table; only such a robot can be varied")
+        raise _refused(place, said, robot=robot.name)
     names = value.get("names", [])
     if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
-        raise SheetError(f'{place}: names; write a list such as ["l1", "m2"]')
+        raise _refused(place, _('names; write a list such as ["l1", "m2"]'))
     from kinlab.symbolic.vocabulary import vocabulary
 
     words = vocabulary(robot.table).values
     for name in names:
         if name not in words:
-            raise SheetError(f"{place}: names: {robot.name} has no {name!r}; {near(name, words)}")
+            said, choices = _("names: {robot} has no {name}; {choices}"), near_names(name, words)
+            raise _refused(place, said, robot=robot.name, name=repr(name), choices=choices)
     spread = _number(value, "spread", 0.2, place)
     if not 0 < spread <= 0.9:
-        raise SheetError(f"{place}: spread is {spread:g}; a share above 0 and up to 0.9")
-    return Variation(_whole(value, "seed", 0, 0, 2**31, place), tuple(names), spread)
+        said = _("spread is {value:g}; a share above 0 and up to 0.9")
+        raise _refused(place, said, value=spread)
+    ids = _text(value, "ids", place)
+    seed = _whole(value, "seed", 0, 0, 2**31, place)
+    return Variation(seed, tuple(names), spread, str(beside / ids) if ids else "")
 
 
 def _refuse_unknown(table: Mapping[str, Any], known: tuple[str, ...], place: str) -> None:
     for key in table:
         if key not in known:
-            raise SheetError(f"{place}: key {key!r} is unknown; {near(str(key), known)}")
+            said, choices = _("key {key} is unknown; {choices}"), near_names(str(key), known)
+            raise _refused(place, said, key=repr(key), choices=choices)
 
 
 def _text(table: Mapping[str, Any], key: str, place: str) -> str:
     value = table.get(key, "")
     if not isinstance(value, str):
-        raise SheetError(f"{place}: {key} is {type(value).__name__}; write text in quotes")
+        said = _("{key} is {value}; write text in quotes")
+        raise _refused(place, said, key=key, value=_typed(value))
     return value.strip()
 
 
 def _number(table: Mapping[str, Any], key: str, default: float, place: str) -> float:
     value = table.get(key, default)
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise SheetError(f"{place}: {key} is {type(value).__name__}; write a number")
+        said = _("{key} is {value}; write a number")
+        raise _refused(place, said, key=key, value=_typed(value))
     if not (math.isfinite(value) and value >= 0):
-        raise SheetError(f"{place}: {key} is {value}; write a number from 0 up")
+        said = _("{key} is {value}; write a number from 0 up")
+        raise _refused(place, said, key=key, value=value)
     return float(value)
 
 
@@ -335,5 +378,6 @@ def _whole(
 ) -> int:
     value = table.get(key, default)
     if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
-        raise SheetError(f"{place}: {key} is {value!r}; a whole number from {least} to {most}")
+        said = _("{key} is {value}; a whole number from {least} to {most}")
+        raise _refused(place, said, key=key, value=_typed(value), least=least, most=most)
     return value

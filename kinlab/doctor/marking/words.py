@@ -140,6 +140,27 @@ _SAID = {
 }
 
 
+_LISTED = re.compile(
+    r"('[^'\n]{1,40}'(?:\s?[,，、]\s?'[^'\n]{1,40}'){5})(?:\s?[,，、]\s?'[^'\n]{1,40}')+(?:\s*\.\.\.)?"
+)
+_SYMBOLS = re.compile(r"([;；,，]\s*)((?:or|或)?[^;；,，]*)\[symbols\][^;；,，]*")
+
+
+def for_student(problem: str) -> str:
+    """Why a formula cannot be read, as a student needs it: six names, and nothing of [symbols].
+
+    Args:
+        problem: as it is said of a file of formulas.
+    """
+    problem = _LISTED.sub(r"\1 ...", problem.removeprefix("expression: "))
+    explain = _("or explain it on a line of its own: name = formula")
+
+    def instead(found: re.Match[str]) -> str:
+        return f"{_('; ')}{explain}" if found[2].startswith(("or", "或")) else ""
+
+    return _SYMBOLS.sub(instead, problem).replace("[symbols]", _("the lines that explain names"))
+
+
 def _phrase(kind: str) -> str:
     named = kind if _WORDS.fullmatch(kind) else KINDS["other"]
     return _(_SAID.get(kind, named))

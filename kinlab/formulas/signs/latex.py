@@ -173,7 +173,8 @@ class _Reader:
 
     def unread(self, wanted: str = "") -> ExpressionError:
         found = repr(self.next) if self.next else _("the end")
-        allowed = r"names, numbers, + - / ^ _, \frac, \sqrt, \sin, \cos, \tan, \dot, \ddot, \cdot"
+        signs = r"+ - / ^ _, \frac, \sqrt, \sin, \cos, \tan, \dot, \ddot, \cdot"
+        allowed = _("names, numbers, {signs}").format(signs=signs)
         remedy = _("{sign!r} was expected") if wanted else _("write {allowed}")
         remedy = remedy.format(sign=wanted, allowed=allowed)
         near = "".join(self.tokens[max(0, self.at - 6) : self.at])[-40:]

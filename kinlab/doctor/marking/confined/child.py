@@ -2,7 +2,9 @@
 
 It knows numpy and the standard library, not kinlab. Read from stdin: one line of JSON (the
 program, what to call, the states); written to the descriptor it was given: a line of JSON with
-what the system enforces, then one with the answers.
+what the system enforces, one with the functions that the program defines, one for each question
+as soon as it is answered, and one that it is done. So whoever reads knows which question it was
+that ended the process.
 """
 
 import contextlib
@@ -10,6 +12,7 @@ import json
 import math
 import os
 import sys
+from collections.abc import Iterator
 from typing import Any
 
 Reply = dict[str, Any]
@@ -125,16 +128,27 @@ def refuse(
     sys.addaudithook(hook)
 
 
-def answers(program: str, wanted: list[Any], arguments: Reply) -> Reply:
+def loaded(program: str) -> tuple[Reply, Reply]:
+    """What a program defines, as far as it came, and its functions' names with how it ended."""
+    space: Reply = {"__name__": "submission", "__builtins__": __builtins__}
+    error: Reply = {}
+    try:
+        exec(compile(program, "submission.py", "exec"), space)  # noqa: S102
+    except (Exception, SystemExit) as problem:  # noqa: BLE001
+        error["error"] = f"{type(problem).__name__}: {problem}"[:200]
+    codes = ((name, getattr(value, "__code__", None)) for name, value in [*space.items()])
+    own = [name for name, code in codes if getattr(code, "co_filename", "") == "submission.py"]
+    return space, error | {"functions": [name[:40] for name in own[:20]]}
+
+
+def answers(space: Reply, wanted: list[Any], arguments: Reply) -> Iterator[Reply]:
     """The values of every function that is there, or what it did instead."""
     import numpy as np
 
-    space: Reply = {"__name__": "submission", "__builtins__": __builtins__}
-    exec(compile(program, "submission.py", "exec"), space)  # noqa: S102
-    found: Reply = {}
     for question, names, order in wanted:
         function = next((space[name] for name in names if callable(space.get(name))), None)
         if function is None:
+            yield {"question": question}
             continue
         stacks = [np.array(arguments[question][name]) for name in order]
         try:
@@ -144,10 +158,16 @@ def answers(program: str, wanted: list[Any], arguments: Reply) -> Reply:
             stacked = np.stack(values)
             if stacked.size > _MOST:
                 raise ValueError("the answer is too large")
-            found[question] = {"shape": list(stacked.shape), "values": stacked.ravel().tolist()}
+            found: Reply = {"shape": list(stacked.shape), "values": stacked.ravel().tolist()}
         except (Exception, SystemExit) as problem:  # noqa: BLE001  whatever a program may raise
-            found[question] = {"error": f"{type(problem).__name__}: {problem}"[:200]}
-    return found
+            found = {"error": f"{type(problem).__name__}: {problem}"[:200]}
+        yield {"question": question, **found}
+
+
+def _lines(said: Reply, space: Reply, request: Reply) -> Iterator[Reply]:
+    yield said
+    yield from answers(space, request["wanted"], request["arguments"])
+    yield {"done": True}
 
 
 def main() -> None:
@@ -170,13 +190,10 @@ def main() -> None:
     channel.write(json.dumps(enforced) + "\n")
     channel.flush()
     refuse(tuple(sorted(roots)))
-    try:
-        found = answers(request["program"], request["wanted"], request["arguments"])
-        reply: Reply = {"answers": found}
-    except (Exception, SystemExit) as problem:  # noqa: BLE001
-        reply = {"error": f"{type(problem).__name__}: {problem}"[:200]}
-    channel.write(json.dumps(reply) + "\n")
-    channel.flush()
+    space, said = loaded(request["program"])
+    for line in _lines(said, space, request):
+        channel.write(json.dumps(line) + "\n")
+        channel.flush()
     os._exit(0)
 
 
