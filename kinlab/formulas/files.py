@@ -30,7 +30,7 @@ from typing import Any
 from kinlab.errors import ExpressionError, FileError
 from kinlab.formulas import grids, tree, typed
 from kinlab.formulas.handed.equations import solved
-from kinlab.formulas.handed.prose import Unread, left_over
+from kinlab.formulas.handed.prose import Doubt, left_over
 from kinlab.formulas.handed.reading import as_formula
 from kinlab.formulas.signs.latex import LAMBDA
 from kinlab.formulas.signs.letters import WIDE
@@ -72,7 +72,7 @@ class FormulaFile:
     numbers: Mapping[str, str] = field(default_factory=dict)
     others: tuple[FormulaFile, ...] = ()
     remarks: Mapping[str, str] = field(default_factory=dict)
-    unread: Mapping[str, Unread] = field(default_factory=dict)
+    unread: Mapping[str, Doubt] = field(default_factory=dict)
 
 
 def formula_file(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import kinlab as kl
-from kinlab.doctor.marking.reading.labels import Labels
+from kinlab.doctor.marking.reading.labels import SheetLabels
 from kinlab.doctor.marking.reading.pieces import is_formula, is_no_answer
 from kinlab.doctor.marking.sheet import sheet_of
 from kinlab.doctor.marking.submission import read_submission
@@ -60,21 +60,21 @@ def test_labels_in_front_of_an_answer(label, tmp_path):
     ],
 )  # fmt: skip
 def test_what_is_no_label(line):
-    assert Labels(sheet_of(SHEET, "s")).of(line) is None
+    assert SheetLabels(sheet_of(SHEET, "s")).of(line) is None
 
 
 def test_a_label_takes_nothing_of_the_formula():
-    labels = Labels(sheet_of(SHEET, "s"))
+    labels = SheetLabels(sheet_of(SHEET, "s"))
     for line in ("q1: - l1*s1", "(1) - l1*s1", "**q1**: - l1*s1", "1) - l1*s1"):
         assert labels.of(line).rest == "- l1*s1", line
 
 
 def test_a_number_is_the_ids_or_the_place_on_the_sheet():
-    labels = Labels(sheet_of(SHEET, "s"))
+    labels = SheetLabels(sheet_of(SHEET, "s"))
     assert [labels.named(key).id for key in ("3a", "3B", "Exercise 3b", "2.")] == ["q3a", "q3b", "q3b", "q2"]  # fmt: skip
     assert labels.named("3") is None
     named = {**SHEET, "questions": [{"id": "reach", "entry": "x"}, {"id": "torque", "entry": "g2"}]}
-    labels = Labels(sheet_of(named, "s"))
+    labels = SheetLabels(sheet_of(named, "s"))
     assert [labels.named(key).id for key in ("1", "第二题", "Torque")] == [
         "reach",
         "torque",

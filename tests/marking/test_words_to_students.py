@@ -9,7 +9,7 @@ import pytest
 
 import kinlab as kl
 from kinlab.doctor.marking.pages import class_page, pictures_of, student_page
-from kinlab.doctor.marking.reading.labels import Labels
+from kinlab.doctor.marking.reading.labels import SheetLabels
 from kinlab.doctor.marking.sheet import SheetError, sheet_of
 from kinlab.doctor.marking.words import KINDS, for_student
 from kinlab.host.language import _, speaking
@@ -151,7 +151,7 @@ def test_the_guides_labels_are_read():
     text = (DOCS / "howto" / "mark_homework.md").read_text(encoding="utf-8")
     rows = text.split("| label | is read as |")[1].split("\n\n")[0].splitlines()[2:6]
     asked = [{"id": "q1", "entry": "x"}, {"id": "q1a", "entry": "y"}]
-    labels = Labels(sheet_of({"robot": "planar2r", "questions": asked}, "s"))
+    labels = SheetLabels(sheet_of({"robot": "planar2r", "questions": asked}, "s"))
     found = [one for row in rows for one in re.findall(r"`([^`]+)`", row.split(" | ")[0])]
     assert len(found) > 20
     for label in found:

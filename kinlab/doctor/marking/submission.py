@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from kinlab.doctor.marking.reading.encodings import decoded
-from kinlab.doctor.marking.reading.labels import Labels
+from kinlab.doctor.marking.reading.labels import SheetLabels
 from kinlab.doctor.marking.reading.latex import pieces_of_latex
 from kinlab.doctor.marking.reading.pieces import Piece
 from kinlab.doctor.marking.reading.questions import Answers, question_of, sort_pieces
@@ -136,7 +136,7 @@ def read_submission(path: Path, sheet: Sheet, root: Path | None = None) -> Submi
     who, note = student or safe(stem), _note(student)
     if suffix == ".py":
         return Submission(shown, who, name, note=note, aside=aside, program=text)
-    labels = Labels(sheet)
+    labels = SheetLabels(sheet)
     if suffix == ".tex":
         author = _AUTHOR.search(text)
         name = name or (safe(author[1]) if author else "")
@@ -243,7 +243,7 @@ def of_document(
             ]
         else:
             given.append(Piece(value, key))
-    labels = Labels(sheet)
+    labels = SheetLabels(sheet)
     found = sort_pieces(given, sheet, labels)
     lost: list[str] = []
     for key, problem in broken:

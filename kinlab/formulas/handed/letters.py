@@ -48,7 +48,7 @@ _OF_CENTRE = re.compile(rf"{_ELL}\s*_\s*(?:\{{\s*(\w)\s*\}}|(\w))")
 
 
 def siciliano_s_letters(text: str) -> str:
-    r"""``m_{\ell_1}`` as ``m_1``; beside lengths ``a_1``, ``\ell_1`` as the distance of the centre."""
+    r"""``m_{\ell_1}`` as ``m_1``; beside lengths ``a_1``, ``\ell_1`` as the centre's distance."""
     if "\\ell" not in text:
         return text
     text = _OF_LINK.sub(lambda found: f"_{found[1] or found[2]}", text)

@@ -138,7 +138,7 @@ def _words_in(text: str) -> bool:
 
 
 @dataclass(frozen=True)
-class Unread:
+class Doubt:
     """Words beside a formula that may change what it claims.
 
     Attributes:
@@ -150,7 +150,7 @@ class Unread:
     turned: bool
 
 
-def left_over(text: str, found: Iterable[tuple[str, str]], names: Iterable[str]) -> Unread | None:
+def left_over(text: str, found: Iterable[tuple[str, str]], names: Iterable[str]) -> Doubt | None:
     """What is left of doubtful words without those that are names of the formula's.
 
     Args:
@@ -161,7 +161,7 @@ def left_over(text: str, found: Iterable[tuple[str, str]], names: Iterable[str])
     known = {name.lower() for name in names}
     phrase = next((phrase for word, phrase in found if word.lower() not in known), "")
     turned = any(_TURNED.search(prose) for prose in outside_formulas(text))
-    return Unread(phrase, turned) if phrase else None
+    return Doubt(phrase, turned) if phrase else None
 
 
 def _proses(text: str) -> list[tuple[str, bool]]:

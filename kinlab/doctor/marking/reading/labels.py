@@ -44,7 +44,7 @@ _OPERATORS = (*"*/^+-=,;.",)
 
 
 @dataclass(frozen=True)
-class Label:
+class SheetLabel:
     """A label at the beginning of a line.
 
     Attributes:
@@ -58,7 +58,7 @@ class Label:
     sure: bool = True
 
 
-class Labels:
+class SheetLabels:
     """The labels of a sheet's questions.
 
     Args:
@@ -92,7 +92,7 @@ class Labels:
             re.IGNORECASE | re.DOTALL,
         )
 
-    def of(self, line: str) -> Label | None:
+    def of(self, line: str) -> SheetLabel | None:
         """The label at the beginning of a line.
 
         Args:
@@ -108,7 +108,7 @@ class Labels:
             return None
         rest = line[found.start("rest") :].strip()
         sure = any(found[name] for name in ("word", "close", "told", "nth", "bare"))
-        return Label(question, rest, sure or found["sign"] not in _UNSURE)
+        return SheetLabel(question, rest, sure or found["sign"] not in _UNSURE)
 
     def named(self, key: str) -> Question | None:
         """The question that a whole text names: ``1A``, ``Aufgabe 3``, ``2.``.

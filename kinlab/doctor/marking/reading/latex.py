@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 
-from kinlab.doctor.marking.reading.labels import Labels
+from kinlab.doctor.marking.reading.labels import SheetLabels
 from kinlab.doctor.marking.reading.pieces import Piece, is_formula
 from kinlab.doctor.marking.reading.text import pieces_of_text
 from kinlab.doctor.marking.sheet import Sheet
@@ -44,7 +44,7 @@ _LEFT_OUT = re.compile(
 )
 
 
-def pieces_of_latex(text: str, labels: Labels, sheet: Sheet) -> tuple[list[Piece], int]:
+def pieces_of_latex(text: str, labels: SheetLabels, sheet: Sheet) -> tuple[list[Piece], int]:
     """The pieces, and how many lines of a file without formulas are words alone.
 
     Args:
@@ -106,7 +106,7 @@ def _lines(text: str) -> list[str]:
     return re.split(r"\n|\\\\|\\par(?![A-Za-z])", _LEFT_OUT.sub(" ", text))
 
 
-def _between(text: str, labels: Labels, under: str) -> tuple[str, list[Piece]]:
+def _between(text: str, labels: SheetLabels, under: str) -> tuple[str, list[Piece]]:
     """The label before the next formula, and answers without a dollar."""
     pieces: list[Piece] = []
     for line in _lines(text):

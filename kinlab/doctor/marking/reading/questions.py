@@ -11,11 +11,12 @@ from typing import Any
 from kinlab.check.diagnosis import ENTRY_LETTERS, shown_entry
 from kinlab.check.quantities.registry import split_name
 from kinlab.doctor.linkages.named_numbers import named_numbers
-from kinlab.doctor.marking.reading.labels import Labels
+from kinlab.doctor.marking.reading.labels import SheetLabels
 from kinlab.doctor.marking.reading.pieces import Piece, is_no_answer
 from kinlab.doctor.marking.sheet import Question, Sheet
 from kinlab.doctor.text.claims import claimed_of, whole_claimed
 from kinlab.errors import ExpressionError, KinlabError
+from kinlab.formulas.handed.sentences import without_sentences
 from kinlab.formulas.typed import (
     Hand,
     claims,
@@ -25,6 +26,7 @@ from kinlab.formulas.typed import (
     is_name,
     named_in,
     plain_formula,
+    several,
     sides,
 )
 from kinlab.host.language import _
@@ -75,7 +77,9 @@ class Answers:
             self.given.setdefault(question, {})[name] = value
 
 
-def sort_pieces(pieces: Sequence[Piece], sheet: Sheet, labels: Labels | None = None) -> Answers:
+def sort_pieces(
+    pieces: Sequence[Piece], sheet: Sheet, labels: SheetLabels | None = None
+) -> Answers:
     """The answers in the pieces of a submission.
 
     What has a label on its line comes first; what names a question by its left side is taken where
@@ -87,7 +91,7 @@ def sort_pieces(pieces: Sequence[Piece], sheet: Sheet, labels: Labels | None = N
         sheet: what is asked.
         labels: of the sheet, where they are at hand.
     """
-    labels = labels or Labels(sheet)
+    labels = labels or SheetLabels(sheet)
     writing = hand(str(one.text) for one in pieces)
     found = Answers()
     rest: list[tuple[Piece, list[str], Question, str]] = []
@@ -293,7 +297,10 @@ def as_entries(question: Question, given: Mapping[str, str], sheet: Sheet) -> di
     named: dict[str, str] = {}
     for name, text in given.items():
         text = _without_unit(text, question, sheet) if question.answer else text
-        said = claims(text, name or default) or name
+        if whole and several(text, default):
+            named[default] = text
+            continue
+        said = claims(without_sentences(text, question.entry), name or default) or name
         if said in ("", question.id, question.entry, default, shown, _head(question)):
             named[default] = text
             continue

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from kinlab.doctor.marking.reading.labels import Labels
+from kinlab.doctor.marking.reading.labels import SheetLabels
 from kinlab.doctor.marking.reading.pieces import Piece, is_formula, is_no_answer
 
 _SPAN = re.compile(
@@ -20,7 +20,7 @@ _MOST = 200
 """Lines that one formula may go over."""
 
 
-def pieces_of_text(lines: Sequence[str], labels: Labels) -> tuple[list[Piece], int]:
+def pieces_of_text(lines: Sequence[str], labels: SheetLabels) -> tuple[list[Piece], int]:
     """The pieces, and how many lines are words alone.
 
     Args:

@@ -5,27 +5,37 @@ from __future__ import annotations
 import ast
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import Protocol, TypeVar
 
 from kinlab.doctor.bytecode.syntax import copied, factors, nodes
 from kinlab.doctor.program.edits.chains import chain, joined, members
 from kinlab.doctor.program.places import DATA, ProgramEdit, changed, row_of
 from kinlab.doctor.program.trial import Trial
 
-if TYPE_CHECKING:
-    from kinlab.doctor.program.search.repair import ProgramRepair
+
+class _Repair(Protocol):
+    @property
+    def edits(self) -> tuple[ProgramEdit, ...]:
+        """What it changes."""
+
+    @property
+    def rivals(self) -> tuple[object, ...]:
+        """What explains as much."""
+
+
+AnyRepair = TypeVar("AnyRepair", bound=_Repair)
 
 _NAMES = ("name", "index")
 """Kinds of edits that put another name, or one of another number."""
 
 
 def in_company(
-    found: Sequence[ProgramRepair],
+    found: Sequence[AnyRepair],
     likely: Callable[[ProgramEdit], float],
     same: float,
     trial: Trial,
-) -> list[ProgramRepair]:
+    beside: Callable[[AnyRepair, AnyRepair], AnyRepair],
+) -> list[AnyRepair]:
     """Repairs, the first of them with its like in the same line: ``l1*lc2``, or else ``lc1*l2``.
 
     That comes first whose product stands elsewhere in the program.
@@ -35,6 +45,7 @@ def in_company(
         likely: how far-fetched an edit is.
         same: how far apart that may be of what nothing tells apart.
         trial: the program.
+        beside: makes a repair with another one as its rival.
     """
     first = found[0].edits[-1] if found else None
     if first is None or not _is_plain(first, trial) or found[0].rivals:
@@ -52,8 +63,7 @@ def in_company(
         return [*found]
     others = Counter(_products(trial.trees[first.part]))
     some.sort(key=lambda repair: -_company(repair.edits[-1], others, trial))
-    best = replace(some[0], rivals=(some[1],))
-    return [best, *(one for one in found if one is not some[0])]
+    return [beside(some[0], some[1]), *(one for one in found if one is not some[0])]
 
 
 def _is_plain(edit: ProgramEdit, trial: Trial) -> bool:

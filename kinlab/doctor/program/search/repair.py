@@ -110,6 +110,10 @@ class ProgramRepair:
     rivals: tuple[ProgramRepair, ...] = ()
 
 
+def _beside(one: ProgramRepair, other: ProgramRepair) -> ProgramRepair:
+    return replace(one, rivals=(other,))
+
+
 class LineSearch:
     """A wrong program beside what it should answer.
 
@@ -211,7 +215,7 @@ class LineSearch:
                     doubted = doubted or self.evidence.coincident(edit)
             found = self._by_evidence(found)
             if not self.stand:
-                found = in_company(found, self.likely, _SAME, self.trial)
+                found = in_company(found, self.likely, _SAME, self.trial, _beside)
             if below < np.inf:
                 return found
             if len(self.stand) < _STANDING and (not found or best > _NUMBER):
