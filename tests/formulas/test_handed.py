@@ -203,6 +203,7 @@ SENTENCES = [
     f"Differentiating and collecting terms, we find x = {X}. Done.", f"Q3b) So we get: x = {X}", rf"(c) Hence ${LATEX}$",
     f"By the law of cosines and the addition theorem x = {X}, which is the x coordinate of the tool.",
     "With h = l2*c12 the x coordinate is x = l1*c1 + h, in metres", f"x = {X}; it vanishes for q1 = pi/2 and q2 = 0",
+    "l1*cos(q1) + l2*cos(q1+q2)，当 q1 = 0 时最大", "the coordinate is l1*cos(q1) + l2*cos(q1+q2), largest if q1 = 0 and q2 = 0",
     r"Let $h = l_2 c_{12}$ \text{ and therefore } $x = l_1 c_1 + h$", f"Using cos(a) = cos(-a) we get x = {X}",
     "Therefore\n\\begin{align}\nx &= l_1 c_1 \\\\\n &\\quad + l_2 c_{12}\n\\end{align}", f"x = {X} (since q1 turns both links)",
     f"由几何关系可得：x = {X}。", rf"代入化简后，末端横坐标为 $x = {LATEX}$，单位为米", f"Somit folgt für den Endeffektor x = {X}, sie hängt von beiden Winkeln ab.",

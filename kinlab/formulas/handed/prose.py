@@ -113,13 +113,18 @@ def _used(word: str, text: str) -> bool:
 
 def condition_in_front(text: str, entry: str) -> bool:
     """Whether an equation in front of the formula says when it holds: ``for q2 = 0``."""
-    found = _CONDITION.search(_flat(text))
+    flat = _flat(text)
+    found = _CONDITION.search(flat)
     if found is None:
         return False
-    front = _flat(text)[: found.start()]
-    return not re.search(rf"(?<![\w]){re.escape(_flat(entry))}\s*=", front) and bool(
-        _words_in(front)
-    )
+    front = flat[: found.start()]
+    name = rf"(?<!\w){re.escape(_flat(entry))}\s*="
+    return not re.search(rf"[*^]|{name}", front) and _words_in(front)
+
+
+def is_condition(equation: str) -> bool:
+    """Whether an equation says when a formula holds, and no name's meaning: ``q2 = 0``."""
+    return bool(_CONDITION.match(_flat(equation).strip()))
 
 
 def _conditions(text: str) -> list[tuple[str, str]]:

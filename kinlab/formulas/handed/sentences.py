@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 
-from kinlab.formulas.handed.prose import MATHS
+from kinlab.formulas.handed.prose import MATHS, is_condition
 from kinlab.formulas.handed.vocabulary import CHINESE, LATIN, is_listed, is_program
 from kinlab.formulas.signs.brackets import parts_at
 from kinlab.formulas.typed import begins_with
@@ -233,7 +233,8 @@ def _equations(piece: str) -> list[str]:
 
 def _is_equation(text: str) -> bool:
     found = _SIDES.match(_ALIGNED.sub("", text).strip())
-    return bool(found and _NAME.fullmatch(found["left"]) and found["right"].strip())
+    named = found is not None and _NAME.fullmatch(found["left"]) and found["right"].strip()
+    return bool(named) and not is_condition(text)
 
 
 def _plain(text: str) -> str:

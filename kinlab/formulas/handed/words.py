@@ -25,6 +25,8 @@ _OTHERWISE = re.compile(
     re.IGNORECASE,
 )
 """Words that say what a name means in another way than the robot's, or that a formula is none."""
+_FORMULA = re.compile(r"[=*^]")
+"""Where a formula begins, or its name ended."""
 _HARMLESS_NOT = "depend|contain|appear|matter|change|enter|vary"
 _DENIED = re.compile(
     r"\b(?:if|falls|wenn|assum\w+|never|unless|kein\w*"
@@ -72,7 +74,7 @@ def _refuse_meanings(text: str, entry: str, place: str) -> None:
         if found:
             said = N_("{words!r} beside the formula may change what its names mean; leave it out")
             raise refused(place, said, words=around(prose, *found.span()))
-    if _DENIED.search(text.partition("=")[0]) or condition_in_front(text, entry):
+    if _DENIED.search(_FORMULA.split(text)[0]) or condition_in_front(text, entry):
         said = N_("{words!r} in front of the formula may change what its names mean; leave it out")
         raise refused(place, said, words=text.strip()[:60])
     if words := explained_by(text):
