@@ -12,7 +12,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.compare import relative_errors
 from kinlab.check.diagnosis import Cause
-from kinlab.doctor.changes import AnswerEntry, Case, Confusion, entries
+from kinlab.doctor.changes import AnswerEntry, Case, Confusion, entries, table_of
 from kinlab.doctor.confusions.centres import FreeCentres, apart, by_equal_numbers, stands_so
 from kinlab.doctor.derived import Derivation, searchable
 from kinlab.doctor.entries import terms
@@ -22,7 +22,9 @@ from kinlab.doctor.linkages.looked_up import Reference, reference_of
 from kinlab.doctor.text.line import Line, words_in
 from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import numbers_at
+from kinlab.errors import KinlabError
 from kinlab.host.language import _
+from kinlab.symbolic.vocabulary import vocabulary
 from kinlab.tolerances import TOLERANCES
 
 RIVALS = 2
@@ -139,7 +141,8 @@ def _defined(
             if len(left) >= len(off):
                 continue
             # of what is right by one change of a definition, only one of the formula is as simple
-            if len(left) < len(off) - 1 or _is_simpler(slip, alone(entry), some.line):
+            simpler = len(left) < len(off) - 1 or _is_simpler(slip, alone(entry), some.line)
+            if simpler or _means_the_arm_s(case, entry, written, slip):
                 slip = slip.with_error(entry.error(slip.values, entry.engine))
                 found.append((len(left), slip))
                 told.add(entry.label)
@@ -233,6 +236,35 @@ def _is_simpler(slip: Slip, others: list[Slip], line: Line) -> bool:
         return len(slip.kinds) < len(one.kinds)
 
     return all(map(beaten, others))
+
+
+def _means_the_arm_s(
+    case: Case, entry: AnswerEntry, written: dict[str, Written], slip: Slip
+) -> bool:
+    """Whether a definition of a name of the arm's, I3, is the arm's only with a slip repaired."""
+    assert slip.defined is not None
+    name = slip.defined[0]
+    own = _number_of(case, name)
+    if not own:
+        return False
+    here = numbers_at(case)
+    texts = (written, _defined_otherwise(written, slip))
+    try:
+        old, new = (one[entry.label].definition(name).values(here) for one in texts)
+    except (KinlabError, KeyError):
+        return False
+    near = TOLERANCES.formula_agrees * abs(own)
+    return bool(np.max(np.abs(new - own)) <= near < np.max(np.abs(old - own)))
+
+
+def _number_of(case: Case, name: str) -> float:
+    """The number of the arm's by its name, or by one that books have for it: lc2; else 0."""
+    derived, table = reference_of(case), table_of(case.robot)
+    values = {} if derived is None else derived.values
+    if name not in values and table is not None:
+        words = vocabulary(table)
+        return float(sum(x * words.values[word] for x, word in words.others.get(name, ())))
+    return float(values.get(name, 0.0))
 
 
 def _defined_otherwise(written: dict[str, Written], slip: Slip) -> dict[str, Written]:

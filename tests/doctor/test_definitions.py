@@ -158,3 +158,16 @@ def test_a_centre_by_a_letter_of_ones_own_is_told_by_it() -> None:
     assert found.causes and found.causes[0].sentence.startswith("delta: l2 should be r2"), str(
         found
     )
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "text", "said"),
+    [
+        ("planar3r", "M33", "I3 = m3*l3^2/3; M33 = I3 + m3*(l3/2)^2", "I3: 3 should be 12"),
+        ("planar2r_rods", "M22", "I2 = m2*l2^2/3, M22 = I2 + m2*lc2^2", "I2: 3 should be 12"),
+        # where the name is set as the arm has it, the slip is in the formula
+        ("planar3r", "M33", "I3 = m3*l3^2/12; M33 = I3 + m3*l3^2", "M33: m3*l3^2 should be m3*l3^2/4"),
+    ],
+)  # fmt: skip
+def test_a_name_of_the_arm_s_that_is_set_wrongly_is_told_where_it_is_set(robot, entry, text, said):
+    assert kl.diagnose(robot, entry, text).sentence.startswith(said)
