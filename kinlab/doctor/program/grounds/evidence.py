@@ -532,7 +532,7 @@ def _are_flags(seen: Seen | None) -> bool:
 
 def zeros_and_ones(value: Array) -> bool:
     """Whether there is nothing else in a value, so that anything could be it."""
-    return bool(np.all((value == 0) | (np.abs(value) == 1)))
+    return all(x == 0 or abs(x) == 1 for x in value.ravel().tolist())
 
 
 def _factor(edit: ProgramEdit) -> float:

@@ -46,7 +46,7 @@ class LaneGroup:
         which: the numbers of the lanes here, ascending; None for all.
     """
 
-    __slots__ = ("_apart", "_chosen", "_edits", "_inner", "_places", "_rest", "_where",
+    __slots__ = ("_apart", "_begins", "_chosen", "_edits", "_inner", "_places", "_rest", "_where",
                  "amount", "at", "size", "which")  # fmt: skip
 
     def __init__(self, chosen: Any, which: Any = None, apart: bool | None = None) -> None:
@@ -55,34 +55,34 @@ class LaneGroup:
         self.amount = _STEP + self.size // _NUMBERS
         self.at: dict[int, list[int]] = {}
         self._apart = apart
-        self._edits: dict[int, tuple[int, int]] | None = None
+        self._edits: dict[int, int] | None = None
         self._inner: dict[int, LaneGroup] = {}
         self._rest: dict[tuple[int, ...], LaneGroup] = {}
         self._where: dict[LaneGroup, Any] = {}
 
     @property
-    def edits(self) -> dict[int, tuple[int, int]]:
-        """The edits that any lane here has, each with where these lanes are in the list of all."""
+    def edits(self) -> dict[int, int]:
+        """The edits that any lane here has, numbered."""
         if self._edits is None and not self.size:
             self._edits = {}
         if self._edits is None:
-            chosen = self._chosen if self.which is None else self._chosen[self.which]
+            chosen = self._chosen if self.which is None else self._chosen.take(self.which, axis=0)
             flat = chosen.ravel()
             order = flat.argsort(kind="stable")
             flat = flat[order]
             starts = np.concatenate([_FIRST, (flat[1:] != flat[:-1]).nonzero()[0] + 1])
-            edits, begins = flat[starts].tolist(), starts.tolist()
-            self._places = order // chosen.shape[1]
-            spans = zip(begins, [*begins[1:], len(flat)], strict=True)
-            self._edits = dict(zip(edits, spans, strict=True))
+            edits = flat[starts].tolist()
+            self._places, self._begins = order // chosen.shape[1], starts
+            self._edits = dict(zip(edits, range(len(edits)), strict=True))
         return self._edits
 
     def inner(self, edit: int) -> LaneGroup:
         """Those of the lanes here that have an edit."""
         found = self._inner.get(edit)
         if found is None:
-            start, end = self.edits[edit]
-            places = self._places[start:end]
+            k, begins = self.edits[edit], self._begins
+            end = begins[k + 1] if k + 1 < len(begins) else len(self._places)
+            places = self._places[begins[k] : end]
             if self._apart is None:
                 self._apart = _apart(self._chosen)
             which = places if self.which is None else self.which[places]
