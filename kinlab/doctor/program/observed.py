@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import copied, nodes
+from kinlab.doctor.bytecode.syntax import copied, located, nodes
 from kinlab.doctor.program.trial import FieldChange, Trial, quietly
 
 _KEPT = 64
@@ -199,7 +199,7 @@ def _watched(tree: ast.FunctionDef, part: int) -> ast.FunctionDef:
                 if isinstance(node, ast.expr) and _watchable(parent, name, node):
                     where: list[ast.expr] = [ast.Constant(part), ast.Constant(numbers[id(node)])]
                     change.put(ast.Call(ast.Name("_see", ast.Load()), [*where, node], []))
-    return ast.fix_missing_locations(own)
+    return located(own)
 
 
 def _watchable(parent: ast.AST, name: str, node: ast.expr) -> bool:

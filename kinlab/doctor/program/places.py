@@ -17,7 +17,7 @@ DATA = -1
 """In place of a part's number: an edit of the program's data."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)  # never changed; frozen ones take five times as long to make
 class ProgramEdit:
     """Something else in one place of a program.
 
@@ -51,7 +51,7 @@ def changed(trial: Trial, several: tuple[ProgramEdit, ...]) -> AbstractContextMa
     return trial.changed(parts, [change for edit in several for change in edit.changes])
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)  # never changed; frozen ones take five times as long to make
 class Here:
     """A node and where it hangs."""
 

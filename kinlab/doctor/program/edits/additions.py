@@ -6,7 +6,7 @@ import ast
 from collections.abc import Iterator
 from math import pi
 
-from kinlab.doctor.bytecode.syntax import called, copied, factors, names, nodes
+from kinlab.doctor.bytecode.syntax import called, copied, factors, names, nodes, text_of
 from kinlab.doctor.program.edits import chains
 from kinlab.doctor.program.edits.scope.forms import Turned, statement_of, stem_of, summands
 from kinlab.doctor.program.edits.scope.part import Scope
@@ -186,7 +186,7 @@ def _divided(here: Here, scope: Scope, summand: bool) -> Iterator[ProgramEdit]:
     op = node.op if isinstance(node, ast.BinOp) else None
     if (summand and isinstance(op, ast.Add | ast.Sub)) or isinstance(op, ast.Div):
         return
-    own = {ast.unparse(one) for one in nodes(node) if isinstance(one, ENTRIES)}
+    own = {text_of(one) for one in nodes(node) if isinstance(one, ENTRIES)}
     for text, divisor in scope.simple(()):
         if text in scope.divisors and text not in own:
             new = ast.BinOp(node, ast.Div(), divisor)
@@ -200,12 +200,12 @@ def _is_mixed(here: Here) -> bool:
     if here.parent not in sums:
         return False
     squared = {
-        ast.unparse(x.left)
+        text_of(x.left)
         for one in summands(sums[0])
         for x in nodes(one)
         if isinstance(x, ast.BinOp) and isinstance(x.op, ast.Pow)
     }
-    own = {ast.unparse(x) for x in factors(here.node)}
+    own = {text_of(x) for x in factors(here.node)}
     return len(own & squared) > 1
 
 
@@ -254,7 +254,7 @@ def _matrices(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
             for turned in (matrix, ast.Attribute(matrix, "T", ast.Load())):
                 if turned is not matrix and isinstance(matrix, ast.Attribute):
                     continue
-                if turned is not matrix and text == ast.unparse(node):
+                if turned is not matrix and text == text_of(node):
                     continue  # a rotation's product with its own transpose is 1
                 if size == shape[0]:
                     new = ast.BinOp(turned, ast.MatMult(), node)
@@ -275,7 +275,7 @@ def _angle(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     node = here.node
     radians = ast.BinOp(node, ast.Mult(), number(pi / 180))
     yield here.instead(radians, "degrees", 1.1)
-    own = {ast.unparse(n) for n in nodes(node)}
+    own = {text_of(n) for n in nodes(node)}
     every = _all_angles(node, scope)
     if every is not None:
         yield here.instead(every, "argument", _NEXT_ANGLE)
@@ -283,7 +283,7 @@ def _angle(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
         if text not in own:
             cost = 1.0 + scope.dear(angle)
             cost = min(cost, _NEXT_ANGLE) if follow(angle, node) else cost
-            first, last = (angle, node) if text < ast.unparse(node) else (node, angle)
+            first, last = (angle, node) if text < text_of(node) else (node, angle)
             yield here.instead(ast.BinOp(first, ast.Add(), last), "argument", cost)
 
 
@@ -297,7 +297,7 @@ def _all_angles(node: ast.expr, scope: Scope) -> ast.expr | None:
     elif isinstance(node, ast.Subscript) and whole_constant(node.slice):
         at = value_of(node.slice)
         terms = [ast.Subscript(node.value, number(k), ast.Load()) for k in range(at + 1)]
-    if len(terms) < _THRICE or ast.unparse(terms[-1]) != ast.unparse(node):
+    if len(terms) < _THRICE or text_of(terms[-1]) != text_of(node):
         return None
     return chains.joined(terms[0], [(ast.Add(), one) for one in terms[1:]])
 
@@ -306,7 +306,7 @@ def _signs(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """What is 1 or -1, of a solution's branch or of a side, times a term that lacks it."""
     if not isinstance(here.node, ast.Name | ast.Subscript | ast.Call):
         return
-    beside = {ast.unparse(one) for one in nodes(statement_of(here.above) or here.node)}
+    beside = {text_of(one) for one in nodes(statement_of(here.above) or here.node)}
     for text, one in scope.simple(()):
         seen = scope.observed.of(one)
         told = {*map(float, seen.values)} if seen is not None else set()
@@ -316,7 +316,7 @@ def _signs(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
 
 def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[ProgramEdit]:
     node, parent = here.node, here.parent
-    own = ast.unparse(node)
+    own = text_of(node)
     power = isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.Pow)
     named = isinstance(node, ast.Name | ast.Subscript)
     beside = _factors_beside(here) if term else set()
@@ -362,7 +362,7 @@ def _squares_and_products(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     if isinstance(node.op, ast.Pow) and getattr(node.right, "value", 0) == 2:
         for _text, other in scope.simple(()):
             if follow(other, node.left):
-                first, last = sorted((other, node.left), key=ast.unparse)
+                first, last = sorted((other, node.left), key=text_of)
                 yield here.instead(ast.BinOp(first, ast.Mult(), last), "index", _MIXED_SQUARE)
     if isinstance(node.op, ast.Mult) and isinstance(node.right, ENTRIES):
         front = node.left.right if isinstance(node.left, ast.BinOp) else node.left
@@ -418,10 +418,10 @@ def _beside_a_part(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     ):
         return
     alike = own[0].value if isinstance(own[0], ast.Subscript) else own[0]
-    text, letters = ast.unparse(own[0]), ast.unparse(alike).rstrip("0123456789")
+    text, letters = text_of(own[0]), text_of(alike).rstrip("0123456789")
     for other, scalar in scope.pieces_here(()).items():
         beside = scalar.value if isinstance(scalar, ast.Subscript) else scalar
-        if other != text and ast.unparse(beside).rstrip("0123456789") == letters:
+        if other != text and text_of(beside).rstrip("0123456789") == letters:
             new = ast.BinOp(node, ast.Add(), scalar)
             yield here.instead(new, "missing term", _BESIDE_A_PART)
 
@@ -475,7 +475,7 @@ def _factors_beside(here: Here) -> set[str]:
             break
         own = above
     sets = [
-        {ast.unparse(n) for n in nodes(summand) if isinstance(n, ast.Name | ast.Attribute)}
+        {text_of(n) for n in nodes(summand) if isinstance(n, ast.Name | ast.Attribute)}
         for one in terms
         for summand in summands(one)
         if not isinstance(summand, ast.Constant)
@@ -486,7 +486,7 @@ def _factors_beside(here: Here) -> set[str]:
 
 def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[ProgramEdit]:
     node = here.node
-    own = ast.unparse(node)
+    own = text_of(node)
     entry = isinstance(here.parent, ast.List | ast.Tuple)
     stem = stem_of(here.above)
     siblings = scope.addends.get(stem, set()) if whole else set()
@@ -533,10 +533,10 @@ def _of_one_joint(one: ast.expr, other: ast.expr) -> bool:
 
 def _turned_terms(here: Here, scope: Scope, siblings: set[str]) -> Iterator[ProgramEdit]:
     """What stands in the line beside, with cosines for sines: of x what is there of y."""
-    own = {ast.unparse(one) for one in summands(here.node)}
+    own = {text_of(one) for one in summands(here.node)}
     for text in sorted(siblings):
         piece = Turned(scope.shapes).visit(ast.parse(text, mode="eval").body)
-        turned = ast.unparse(piece)
+        turned = text_of(piece)
         if turned != text and turned not in own and isinstance(piece, ast.BinOp):
             for op, cost in ((ast.Add(), 1.1), (ast.Sub(), 1.12)):
                 yield here.instead(ast.BinOp(here.node, op, piece), "missing term", cost)
@@ -607,4 +607,4 @@ def _entries_beside(here: Here) -> set[str]:
     """The names in the other entries of a list, and these themselves."""
     assert isinstance(here.parent, ast.List | ast.Tuple)
     others = [one for one in here.parent.elts if one is not here.node]
-    return {*(name for one in others for name in names(one)), *map(ast.unparse, others)}
+    return {*(name for one in others for name in names(one)), *map(text_of, others)}

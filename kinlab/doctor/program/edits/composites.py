@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from functools import reduce
 from itertools import product
 
-from kinlab.doctor.bytecode.syntax import factors, names, nodes
+from kinlab.doctor.bytecode.syntax import factors, names, nodes, text_of
 from kinlab.doctor.program.edits.scope.forms import statement_of
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.observed import Observed, Shape
@@ -97,7 +97,7 @@ def _parallel_axes(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
         for name, known in scope.attributes.items():
             if known == ():
                 one = ast.Attribute(here.node.value, name, ast.Load())
-                simple.setdefault(ast.unparse(one), one)
+                simple.setdefault(text_of(one), one)
     masses = [one for one in simple.values() if _begins(one, _MASSES)]
     lengths = [one for one in simple.values() if _begins(one, _LENGTHS)]
     for mass in masses:
@@ -122,7 +122,7 @@ def _parallel_axes_of_tensors(here: Here, scope: Scope) -> Iterator[ProgramEdit]
         turned = ast.Attribute(one, "T", ast.Load())
         added.append(ast.BinOp(one, ast.MatMult(), turned))
     for one in arms if scope.has_numpy else ():
-        text = ast.unparse(one)
+        text = text_of(one)
         squares = f"({text} @ {text}*np.eye(3) - np.outer({text}, {text}))"
         added.append(ast.parse(squares, mode="eval").body)
     for mass in masses:
@@ -164,7 +164,7 @@ def _spread(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
             if n == k or not isinstance(factor, ast.Name | ast.Subscript | ast.Attribute):
                 continue
             for text, other in scope.simple(()):
-                if text == ast.unparse(factor) or text in scope.counters:
+                if text == text_of(factor) or text in scope.counters:
                     continue
                 for first, last in ((other, factor), (factor, other)):
                     left = ast.BinOp(total.left, ast.Mult(), first)
@@ -222,7 +222,7 @@ def _of_list_from_there_on(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
 
 def _digits(node: ast.expr) -> str:
     """The number of a link: ``2`` of ``m2``, and of ``m[1]`` its index."""
-    text = ast.unparse(node)
+    text = text_of(node)
     return "".join(letter for letter in text if letter.isdigit())
 
 
@@ -272,7 +272,7 @@ def _cross_products(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     axial = [x for x in axial if isinstance(x.op, ast.Mult) and _begins(x.left, _RATES)]
     rates += [x for x in axial if isinstance(x.left, ast.Name | ast.Subscript)][:_FEW]
     vectors = [one for one in plain if isinstance(one, ast.BinOp) or _begins(one, _ARMS)]
-    own = ast.unparse(here.node)
+    own = text_of(here.node)
     for both in scope.pieces_here(_VECTOR).values():  # of w = R.T @ w + qd*z
         if isinstance(both, ast.BinOp) and isinstance(both.op, ast.Add) and _begins_turned(both):
             across = ast.Call(scope.cross, [both.left, both.right], [])
@@ -280,7 +280,7 @@ def _cross_products(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
             yield here.instead(new, "missing term", _OF_SUMMANDS)
     for rate in rates:
         for vector in vectors[: 2 * _FEW]:
-            if ast.unparse(vector) in (ast.unparse(rate), own):
+            if text_of(vector) in (text_of(rate), own):
                 continue
             cost = 1.17 + scope.dear(vector) / 2
             product: ast.expr = vector
@@ -312,7 +312,7 @@ def _is_arm(node: ast.expr) -> bool:
 
 def _of_levers(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """A lever that begins, or ends, elsewhere: ``cross(r + c, F)`` for ``cross(c, F)``."""
-    own = ast.unparse(here.node)
+    own = text_of(here.node)
     arms = [(text, one) for text, one in scope.simple(_VECTOR) if _begins(one, _ARMS)]
     for text, other in arms[: 2 * _FEW]:
         if text != own:
@@ -340,12 +340,12 @@ def _of_turning(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
 
 def _turned_with(node: ast.expr, rate: ast.expr, scope: Scope) -> Iterator[ast.expr]:
     """What turns with a velocity, where a term is of an acceleration."""
-    own = ast.unparse(rate)
+    own = text_of(rate)
     if isinstance(node, ast.Call) and scope.crosses(node):
-        if ast.unparse(node.args[0]) != own:
+        if text_of(node.args[0]) != own:
             yield ast.Call(node.func, [rate, node.args[1]], [])
     elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult):
-        if ast.unparse(node.right) != own:
+        if text_of(node.right) != own:
             yield ast.BinOp(node.left, node.op, rate)
     elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult):
         if {scope.observed.shape(one) for one in (node.left, node.right)} == {_VECTOR}:
@@ -353,14 +353,14 @@ def _turned_with(node: ast.expr, rate: ast.expr, scope: Scope) -> Iterator[ast.e
         for scalar, vector in ((node.left, node.right), (node.right, node.left)):
             if isinstance(scalar, ast.Subscript) and scope.observed.shape(scalar) == ():
                 for text, other in scope.simple(()):
-                    if not isinstance(other, ast.Subscript) or text == ast.unparse(scalar):
+                    if not isinstance(other, ast.Subscript) or text == text_of(scalar):
                         continue
                     if ast.dump(other.slice) == ast.dump(scalar.slice):
                         yield ast.BinOp(other, node.op, vector)
             elif isinstance(scalar, ast.Name):  # z*rate beside z*rate2
                 for piece in scope.pieces_here(_VECTOR).values():
                     product = isinstance(piece, ast.BinOp) and isinstance(piece.op, ast.Mult)
-                    if product and ast.unparse(vector) in map(ast.unparse, factors(piece)):
+                    if product and text_of(vector) in map(text_of, factors(piece)):
                         yield piece
 
 

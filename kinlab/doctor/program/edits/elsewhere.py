@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import called, copied, names, nodes
+from kinlab.doctor.bytecode.syntax import called, copied, names, nodes, text_of
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import (
@@ -81,7 +81,7 @@ class Elsewhere:
                         self._company[_bare(one)].append(of)
                 if isinstance(node, ast.Call) and called(node) in own:
                     for k, one in enumerate(node.args):
-                        self._given[called(node), k].setdefault(ast.unparse(one), one)
+                        self._given[called(node), k].setdefault(text_of(one), one)
             self._of_lines(tree)
         self._products = _products(trial, observed)
         self._roles = _roles(trial, observed)
@@ -97,7 +97,7 @@ class Elsewhere:
                 table = isinstance(node, ast.List) and isinstance(node.elts[0], ast.List)
                 yield here.instead(new, _kind(node, new), 1.14 if table else 1.06)
         if isinstance(here.parent, ast.Call) and here.holder is here.parent.args:
-            mine = ast.unparse(node)
+            mine = text_of(node)
             for text, one in self._given.get((called(here.parent), here.field), {}).items():
                 if text != mine and observed.shape(one) == (shape or ()) and _known(one, scope):
                     yield here.instead(one, "name", 1.05 if is_nothing(node) else 1.1)
@@ -125,10 +125,10 @@ class Elsewhere:
             yield from _from_the_axis(here, scope)
         if len(shape) == _MATRIX and isinstance(here.parent, ast.Assign):
             yield from self._multiplied(here, scope, shape)
-        seen = {ast.unparse(node), ast.unparse(here.parent)}
+        seen = {text_of(node), text_of(here.parent)}
         for of in self._company.get(_bare(node), ()):
             larger = _renamed(of, node)
-            text = "" if larger is None else ast.unparse(larger)
+            text = "" if larger is None else text_of(larger)
             if larger is None or text in seen or not _known(larger, scope):
                 continue
             seen.add(text)
@@ -199,9 +199,9 @@ class Elsewhere:
         for line in nodes(tree):
             if isinstance(line, ast.Assign) and len(line.targets) == 1:
                 for target, value in paired(line.targets[0], line.value):
-                    text = ast.unparse(target)
+                    text = text_of(target)
                     numbers = [int(x) for x in re.findall(r"\d", text)]
-                    if numbers and len(ast.unparse(value)) <= _LETTERS:
+                    if numbers and len(text_of(value)) <= _LETTERS:
                         alike[re.sub(r"\d", "#", text)].append((numbers, value))
         for some in alike.values():
             for here, value in some[:_ALIKE]:
@@ -328,7 +328,7 @@ def _bare(node: ast.expr) -> str:
     """An expression without the names of its indices: ``T[#][:3, 3]`` of ``T[i + 1][:3, 3]``."""
     if isinstance(node, ast.Name):
         return node.id
-    return re.sub(r"\[(?:[a-z](?: [-+] 1)?|\d)\]", "[#]", ast.unparse(node))
+    return re.sub(r"\[(?:[a-z](?: [-+] 1)?|\d)\]", "[#]", text_of(node))
 
 
 def _renamed(of: _Company, node: ast.expr) -> ast.expr | None:
@@ -467,9 +467,9 @@ def _known(new: ast.expr, scope: Scope) -> bool:
 
 def _kind(old: ast.expr, new: ast.expr) -> str:
     """What is wrong where one stands for the other."""
-    before, after = ast.unparse(old), ast.unparse(new)
+    before, after = text_of(old), text_of(new)
     larger, smaller = (new, old) if before in after else (old, new)
-    if ast.unparse(smaller) not in ast.unparse(larger):
+    if text_of(smaller) not in text_of(larger):
         return "name"
     told = "missing" if larger is new else "extra"
     if isinstance(larger, ast.BinOp) and isinstance(larger.op, ast.Add | ast.Sub):

@@ -13,7 +13,7 @@ from math import pi
 
 import numpy as np
 
-from kinlab.doctor.bytecode.syntax import called, copied, names, nodes
+from kinlab.doctor.bytecode.syntax import called, copied, names, nodes, text_of
 from kinlab.doctor.program.edits import exchanges
 from kinlab.doctor.program.edits.additions import as_a_term
 from kinlab.doctor.program.edits.blocks import of_blocks
@@ -127,7 +127,7 @@ def _terms_beside(here: Here) -> set[str]:
         if not isinstance(above, ast.BinOp) or not isinstance(above.op, ast.Add | ast.Sub):
             break
         whole = above
-    return {ast.unparse(one) for one in summands(whole)} if isinstance(whole, ast.expr) else set()
+    return {text_of(one) for one in summands(whole)} if isinstance(whole, ast.expr) else set()
 
 
 def _once_more(edit: ProgramEdit, terms: set[str]) -> bool:
@@ -136,7 +136,7 @@ def _once_more(edit: ProgramEdit, terms: set[str]) -> bool:
     if edit.kind != "missing term" or not isinstance(new, ast.BinOp):
         return False
     put = [one for one in (new.left, new.right) if one is not edit.node]
-    return len(put) == 1 and isinstance(put[0], _ENTRIES) and ast.unparse(put[0]) in terms
+    return len(put) == 1 and isinstance(put[0], _ENTRIES) and text_of(put[0]) in terms
 
 
 def _in_order(edit: ProgramEdit) -> ProgramEdit:
@@ -145,7 +145,7 @@ def _in_order(edit: ProgramEdit) -> ProgramEdit:
     if edit.kind != "missing term" or not isinstance(new, ast.BinOp):
         return edit
     turned = isinstance(new.op, ast.Add) and follow(new.left, new.right)
-    if not turned or ast.unparse(new.left) < ast.unparse(new.right):
+    if not turned or text_of(new.left) < text_of(new.right):
         return edit
     change = replace(edit.changes[0], new=ast.BinOp(new.right, new.op, new.left))
     return replace(edit, changes=(change, *edit.changes[1:]))
@@ -192,7 +192,7 @@ def _rotations_beside(here: Here, observed: Observed) -> set[str]:
             break
         found.append(above.right if above.left is inner else above.left)
         inner = above
-    return {ast.unparse(one) for one in found if _is_rotation(observed.of(one))}
+    return {text_of(one) for one in found if _is_rotation(observed.of(one))}
 
 
 def _is_rotation(seen: Seen | None) -> bool:
@@ -207,7 +207,7 @@ def _undoes(edit: ProgramEdit, beside: set[str]) -> bool:
     new = edit.changes[0].new
     if edit.kind != "missing matrix" or not isinstance(new, ast.BinOp):
         return False
-    put = [ast.unparse(one) for one in (new.left, new.right)]
+    put = [text_of(one) for one in (new.left, new.right)]
     return any(one + ".T" in beside or one.removesuffix(".T") in beside - {one} for one in put)
 
 
@@ -412,7 +412,7 @@ def _for_all_joints(here: Here, scope: Scope, observed: Observed) -> Iterator[Pr
     target, key = copied(node.target.value), node.target.slice
     target.ctx = ast.Store()
     for _text, row in [*scope.simple(shape)][:_ROWS]:
-        if ast.unparse(row) != ast.unparse(target):
+        if text_of(row) != text_of(target):
             new = ast.AugAssign(target, node.op, ast.BinOp(node.value, ast.Mult(), row))
             yield here.instead(new, "missing factor", 1.12)
     slice_ = ast.Slice(None, plus(key, 1), None)

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import called, nodes
+from kinlab.doctor.bytecode.syntax import called, nodes, text_of
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.numbers.data import NumberPlace, leaves_of, numbers, together
 from kinlab.doctor.program.edits.numbers.own_numbers import among, may_be_gravity, sizes_of
@@ -134,7 +134,7 @@ class Dimensions:
         own = self._seen.get(id(node))
         if own is not None:
             return _each_ratio(*own)
-        return self._entries_of_text(ast.unparse(node))
+        return self._entries_of_text(text_of(node))
 
     def _entries_of_text(self, text: str) -> Array | None:
         if text not in self._by_text:
@@ -244,7 +244,7 @@ class Dimensions:
         if isinstance(node, ast.Attribute) and node.attr == "T":
             return self._of_new(node.value)
         if isinstance(node, ast.Name | ast.Subscript | ast.Attribute):
-            known = self._texts.get(ast.unparse(node))
+            known = self._texts.get(text_of(node))
             return self._of_entry(node) if known is None else known
         return None
 
@@ -288,7 +288,7 @@ class Dimensions:
         for tree in self.trial.trees:
             for node in nodes(tree):
                 if isinstance(node, ast.Name | ast.Subscript) and id(node) in self._seen:
-                    found.setdefault(ast.unparse(node), []).append(id(node))
+                    found.setdefault(text_of(node), []).append(id(node))
         return found
 
     def _of_entry(self, node: ast.expr) -> float | None:
@@ -311,7 +311,7 @@ class Dimensions:
             for node in nodes(tree):
                 known = self._known.get(id(node))
                 if known is not None and isinstance(node, ast.Name | ast.Subscript | ast.Attribute):
-                    text = ast.unparse(node)
+                    text = text_of(node)
                     if not _alike(found.setdefault(text, known), known):
                         twice.add(text)
         return {text: known for text, known in found.items() if text not in twice}

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import called, factors, names, nodes
+from kinlab.doctor.bytecode.syntax import called, factors, names, nodes, pieces
 from kinlab.doctor.glossary.meaning import as_vector
 from kinlab.doctor.glossary.textbook import Glossary, Row, Sense
 from kinlab.doctor.program.edits.scope.forms import summands
@@ -104,6 +104,7 @@ class Grounds:
         self.mirrored: set[int] = set()
         self.crossing: set[int] = set()
         self._of_data: dict[str, float] = {}
+        self._wholes: dict[tuple[int, int], frozenset[str]] = {}
         self.worked_out = {
             (part, name) for part, tree in enumerate(trial.trees) for name in _worked_out(tree)
         }
@@ -242,10 +243,19 @@ class Grounds:
             node, holder = node.args[0], node
         if isinstance(node, ast.Name) and (edit.part, node.id) in self.worked_out:
             term = isinstance(holder, ast.BinOp) and isinstance(holder.op, ast.Add | ast.Sub)
-            known = {one.what for one in self._of(node, self.observed) or () if not one.form}
+            known = self._whole(node)
             known -= {*_STATES} if edit.kind not in _WHOLLY else set()
             return not (known or (term and edit.kind in ("sign", "missing term")))
         return False
+
+    def _whole(self, node: ast.expr) -> frozenset[str]:
+        """What of a textbook's an expression was, as it stands there; asked for many edits."""
+        seen = self.observed.of(node)
+        key = id(seen), len(self.known)
+        if key not in self._wholes:
+            senses = self._of(node, self.observed) or ()
+            self._wholes[key] = frozenset(one.what for one in senses if not one.form)
+        return self._wholes[key]
 
     def _is_skew(self, tree: ast.AST) -> bool:
         """Whether a part gives the matrix of a cross product, whose transpose is its opposite."""
@@ -465,7 +475,7 @@ _STEP = re.compile(r"(.*?)_?(\d)_?(\d)")
 
 def _one_name(node: Any) -> list[str]:
     """The name that an expression is made of, beside functions; empty where there are others."""
-    calls = [one.func for one in nodes(node) if isinstance(one, ast.Call)]
+    calls = [one.func for one in pieces(node) if isinstance(one, ast.Call)]
     inside = {name for one in calls for name in names(one)}
     found = {*names(node)} - inside
     return [*found] if len(found) == 1 else []
@@ -522,7 +532,7 @@ def _are_flags(seen: Seen | None) -> bool:
 
 def zeros_and_ones(value: Array) -> bool:
     """Whether there is nothing else in a value, so that anything could be it."""
-    return bool(np.all((value == 0) | (np.abs(value) == 1)))
+    return all(x == 0 or abs(x) == 1 for x in value.ravel().tolist())
 
 
 def _factor(edit: ProgramEdit) -> float:

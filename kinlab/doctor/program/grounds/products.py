@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from functools import reduce
 from itertools import combinations, islice, permutations
 
-from kinlab.doctor.bytecode.syntax import called
+from kinlab.doctor.bytecode.syntax import called, text_of
 from kinlab.doctor.program.edits.scope.part import Scope, standing
 from kinlab.doctor.program.grounds.dimensions import Dimensions
 from kinlab.doctor.program.observed import Observed
@@ -50,9 +50,9 @@ def is_whole(here: Here) -> bool:
 
 
 def _missing(here: Here, scope: Scope, known: Dimensions, size: float) -> Iterator[ProgramEdit]:
-    own = ast.unparse(here.node)
+    own = text_of(here.node)
     for products, most in ((_products, _MOST), (_longer, _LONGER)):
-        new = (one for one in products(scope, known, size) if ast.unparse(one[0]) not in own)
+        new = (one for one in products(scope, known, size) if text_of(one[0]) not in own)
         for product, used in islice(new, most):
             idle = not scope.unused.isdisjoint(used) or scope.uses_idle(product)
             cost = _UNUSED if idle else _USED

@@ -10,7 +10,7 @@ from itertools import combinations
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import called, copied, names
+from kinlab.doctor.bytecode.syntax import called, copied, names, text_of
 from kinlab.doctor.program.edits.additions import OtherName
 from kinlab.doctor.program.edits.scope.forms import statement_of, summands
 from kinlab.doctor.program.edits.scope.part import Scope, standing
@@ -53,7 +53,7 @@ def missing_terms(
     for here, scope in standing(trial, scopes, _is_whole):
         if observed.shape(here.node) is not None:
             for new, cost in _of_other_links(here, scope):
-                beside.add(ast.unparse(new))
+                beside.add(text_of(new))
                 yield here.instead(ast.BinOp(here.node, ast.Add(), new), "missing term", cost)
     for here, scope in standing(trial, scopes, _is_whole):
         shape = observed.shape(here.node)
@@ -75,7 +75,7 @@ def _is_whole(here: Here) -> bool:
 def _of_other_links(here: Here, scope: Scope) -> Iterator[tuple[ast.expr, float]]:
     """``I2*Jw2.T @ Jw2`` beside ``I1*Jw1.T @ Jw1``: each of its names is the other link's."""
     terms = [*summands(here.node)]
-    own = {ast.unparse(one) for one in terms}
+    own = {text_of(one) for one in terms}
     for term in terms:
         digits = {name[-1] for name in names(term) if name[-1:].isdigit()}
         for digit in sorted(digits) if len(digits) == 1 else ():
@@ -87,7 +87,7 @@ def _of_other_links(here: Here, scope: Scope) -> Iterator[tuple[ast.expr, float]
                     continue
                 for name, instead in others.items():
                     new = OtherName(name, instead).visit(new)
-                if isinstance(new, ast.expr) and ast.unparse(new) not in own:
+                if isinstance(new, ast.expr) and text_of(new) not in own:
                     idle = not scope.unused.isdisjoint(others.values())
                     yield new, _NEXT if idle else _USED
 
@@ -95,14 +95,14 @@ def _of_other_links(here: Here, scope: Scope) -> Iterator[tuple[ast.expr, float]
 def _of_dimension(
     here: Here, scope: Scope, known: Dimensions, shape: Shape
 ) -> Iterator[ProgramEdit]:
-    size, own = known.of(here.node), ast.unparse(here.node)
+    size, own = known.of(here.node), text_of(here.node)
     seen = scope.observed.of(here.node)  # nothing but zeros has no dimension
     zeros = seen is not None and not any(map(np.any, seen.values))
     found: list[tuple[float, ast.expr]] = []
     for term in _terms(scope, shape):
         made, idle = known.of_made(term), scope.uses_idle(term)
         told = None if size is None or made is None else abs(made - size)
-        if (told is None and not idle) or ast.unparse(term) in own:
+        if (told is None and not idle) or text_of(term) in own:
             continue
         if told is None or told <= TOLERANCES.tried_further:
             sure, crossed = told is not None or zeros, isinstance(term, ast.Call)
@@ -122,11 +122,11 @@ def _of_matrices(
     But none that another link's stands beside in some line.
     """
     size = known.of_entries(here.node)
-    own = {*beside, *map(ast.unparse, summands(here.node))}
+    own = {*beside, *map(text_of, summands(here.node))}
     line = statement_of(here.above).lineno
     found: list[tuple[float, int, ast.expr]] = []
     for term in _matrix_products(scope, shape):
-        if ast.unparse(term) in own or any(scope.set_at.get(x, 0) > line for x in names(term)):
+        if text_of(term) in own or any(scope.set_at.get(x, 0) > line for x in names(term)):
             continue
         made = known.of_entries(term)
         told = size is not None and made is not None and _compared(size, made)
@@ -203,7 +203,7 @@ def _terms(scope: Scope, shape: Shape) -> Iterator[ast.expr]:
     pieces = scope.pieces_here(shape)
     numbers = [one for text, one in scope.simple(()) if text not in scope.counters]
     numbers.sort(key=lambda one: not scope.uses_idle(one))
-    rows = {ast.unparse(one.value) for one in numbers if isinstance(one, ast.Subscript)}
+    rows = {text_of(one.value) for one in numbers if isinstance(one, ast.Subscript)}
     idle = scope.unused  # what is set and used nowhere is meant as a whole
     vectors = [one for text, one in scope.simple(shape) if text in idle or text not in rows]
     vectors = sorted(vectors, key=lambda one: not scope.uses_idle(one))[:_VECTORS]

@@ -46,39 +46,50 @@ class LaneGroup:
         which: the numbers of the lanes here, ascending; None for all.
     """
 
-    __slots__ = ("_chosen", "_edits", "_inner", "_rest", "_where", "amount", "at", "size", "which")
+    __slots__ = ("_apart", "_begins", "_chosen", "_edits", "_inner", "_places", "_rest", "_where",
+                 "amount", "at", "size", "which")  # fmt: skip
 
-    def __init__(self, chosen: Any, which: Any = None) -> None:
+    def __init__(self, chosen: Any, which: Any = None, apart: bool | None = None) -> None:
         self._chosen, self.which = chosen, which
         self.size = len(chosen) if which is None else len(which)
         self.amount = _STEP + self.size // _NUMBERS
         self.at: dict[int, list[int]] = {}
-        self._edits: dict[int, Any] | None = None
+        self._apart = apart
+        self._edits: dict[int, int] | None = None
         self._inner: dict[int, LaneGroup] = {}
         self._rest: dict[tuple[int, ...], LaneGroup] = {}
         self._where: dict[LaneGroup, Any] = {}
 
     @property
-    def edits(self) -> dict[int, Any]:
-        """The edits that any lane here has, with these lanes."""
+    def edits(self) -> dict[int, int]:
+        """The edits that any lane here has, numbered."""
         if self._edits is None and not self.size:
             self._edits = {}
         if self._edits is None:
-            chosen = self._chosen if self.which is None else self._chosen[self.which]
-            which = np.arange(self.size) if self.which is None else self.which
-            order = np.argsort(chosen, axis=None, kind="stable")
-            edits, starts = np.unique(chosen.ravel()[order], return_index=True)
-            lanes = which[order // chosen.shape[1]]
-            ends = [*starts[1:].tolist(), len(lanes)]
-            parts = zip(edits.tolist(), starts.tolist(), ends, strict=True)
-            self._edits = {edit: lanes[start:end] for edit, start, end in parts}
+            chosen = self._chosen if self.which is None else self._chosen.take(self.which, axis=0)
+            flat = chosen.ravel()
+            order = flat.argsort(kind="stable")
+            flat = flat[order]
+            starts = np.concatenate([_FIRST, (flat[1:] != flat[:-1]).nonzero()[0] + 1])
+            edits = flat[starts].tolist()
+            self._places, self._begins = order // chosen.shape[1], starts
+            self._edits = dict(zip(edits, range(len(edits)), strict=True))
         return self._edits
 
     def inner(self, edit: int) -> LaneGroup:
         """Those of the lanes here that have an edit."""
-        if edit not in self._inner:
-            self._inner[edit] = LaneGroup(self._chosen, self.edits[edit])
-        return self._inner[edit]
+        found = self._inner.get(edit)
+        if found is None:
+            k, begins = self.edits[edit], self._begins
+            end = begins[k + 1] if k + 1 < len(begins) else len(self._places)
+            places = self._places[begins[k] : end]
+            if self._apart is None:
+                self._apart = _apart(self._chosen)
+            which = places if self.which is None else self.which[places]
+            found = self._inner[edit] = LaneGroup(self._chosen, which, self._apart)
+            if self._apart:
+                found._where[self] = places
+        return found
 
     def without(self, edits: Sequence[int]) -> LaneGroup:
         """Those of the lanes here that have none of some edits."""
@@ -86,7 +97,7 @@ class LaneGroup:
         if key not in self._rest:
             which = np.arange(self.size) if self.which is None else self.which
             rest = ~np.isin(self._chosen[which], key).any(axis=1)
-            self._rest[key] = LaneGroup(self._chosen, which[rest])
+            self._rest[key] = LaneGroup(self._chosen, which[rest], self._apart)
         return self._rest[key]
 
     def where(self, outer: LaneGroup) -> Any:
@@ -94,8 +105,17 @@ class LaneGroup:
         if outer.which is None:
             return self.which
         if outer not in self._where:
-            self._where[outer] = np.searchsorted(outer.which, self.which)
+            self._where[outer] = outer.which.searchsorted(self.which)
         return self._where[outer]
+
+
+_FIRST = np.zeros(1, dtype=int)
+
+
+def _apart(chosen: Any) -> bool:
+    """Whether the edits of each lane are different ones."""
+    ordered = np.sort(chosen, axis=1)
+    return not ((ordered[:, 1:] == ordered[:, :-1]) & (ordered[:, 1:] >= 0)).any()
 
 
 Edited = list[tuple[LaneGroup, Any]]
@@ -134,7 +154,8 @@ class Lanes:
         some = here.at.get(id(edits))
         if some is None:
             known = here.edits
-            some = here.at[id(edits)] = [edit for edit in edits if edit in known]
+            none = known.keys().isdisjoint(edits)
+            some = here.at[id(edits)] = [] if none else [x for x in edits if x in known]
         if not some:
             return value
         found: Edited = []

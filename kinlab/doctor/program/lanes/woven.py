@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.doctor.bytecode.syntax import called, names, nodes, shallow
+from kinlab.doctor.bytecode.syntax import called, located, names, nodes, pieces, shallow
 from kinlab.doctor.program.lanes.ways import WRITES, apart, function_of, loaded, may_run_apart
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import (
@@ -226,7 +226,7 @@ class Woven:
             _now, new, spot = self._outside(spot, new)
         if top is None or not isinstance(new, ast.expr):
             return None
-        parts = [*nodes(new), *nodes(_at(spot))]
+        parts = [*pieces(new), *pieces(_at(spot))]
         calls = (node for node in parts if isinstance(node, ast.Call))
         writes = any(called(one) in WRITES and root(one.func) not in _NUMPY for one in calls)
         return None if writes else (spot, new)
@@ -324,7 +324,7 @@ class Woven:
         """A function's definition, or the lines of a module, with the edits in it."""
         found = shallow(old)
         found.body = self._body(old.body)
-        return ast.fix_missing_locations(found)
+        return located(found)
 
     def _body(self, body: list[ast.stmt], alone: bool = False) -> list[ast.stmt]:
         """A block; whether it may run for some lanes alone."""
@@ -400,7 +400,7 @@ class Woven:
         return [*found, other]
 
     def _statement(self, statement: Any, alone: bool) -> list[ast.stmt]:
-        inside = nodes(statement)
+        inside = pieces(statement)
         if any(isinstance(node, ast.Yield | ast.YieldFrom | ast.NamedExpr) for node in inside):
             return [statement]
         if any(isinstance(node, ast.Name) and node.id == "super" for node in inside):
@@ -501,7 +501,7 @@ class Woven:
             return True
         if id(node) in self._above:
             return False
-        return any(id(one) in self._holding for one in nodes(node))
+        return any(id(one) in self._holding for one in pieces(node))
 
 
 def _is_asked(line: ast.Assign) -> bool:

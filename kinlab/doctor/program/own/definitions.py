@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.doctor.bytecode.syntax import copied, names, nodes, shallow
+from kinlab.doctor.bytecode.syntax import INSIDE, copied, names, nodes, shallow
 from kinlab.doctor.program.own.plain import alike, closed
 
 
@@ -136,31 +136,40 @@ def with_products(tree: ast.AST) -> Iterator[None]:
     """A tree with functions for ``@`` and ``@=``, as it is compiled."""
     spots: list[tuple[Any, Any]] = []
     every: list[Any] = [tree]
+    known: set[int] = set()  # what edits leave of a statement hangs in each of its branches
     for node in every:
+        fields = INSIDE[type(node)]
+        if not fields or id(node) in known:
+            continue
+        known.add(id(node))
         inside = node.__dict__
-        for name in node._fields:
+        for name in fields:
             value = inside.get(name)
             if type(value) is list:
-                every += (some := [one for one in value if isinstance(one, ast.AST)])
-                if any(type(getattr(one, "op", None)) is ast.MatMult for one in some):
-                    spots += [(value, k) for k, one in enumerate(value) if _is_product(one)]
-            elif isinstance(value, ast.AST) and value._fields:
+                every += value
+                for k, one in enumerate(value):
+                    if type(one) in _PRODUCTS and type(one.op) is ast.MatMult:
+                        spots.append((value, k))
+            elif value is not None:
                 every.append(value)
-                if _is_product(value):
+                if type(value) in _PRODUCTS and type(value.op) is ast.MatMult:
                     spots.append((inside, name))
     kept = [holder[key] for holder, key in spots]
+    calls = {id(one): _called(one) for one in kept}
     try:
-        for holder, key in reversed(spots):
-            if isinstance(holder[key], ast.BinOp | ast.AugAssign):  # what hangs twice is done once
-                holder[key] = _called(holder[key])
+        for (holder, key), one in zip(spots, kept, strict=True):
+            holder[key] = calls[id(one)]
+        for call in calls.values():
+            given = call.value if isinstance(call, ast.Assign) else call
+            if isinstance(given, ast.Call):
+                given.args = [calls.get(id(one), one) for one in given.args]
         yield
     finally:
         for (holder, key), one in zip(spots, kept, strict=True):
             holder[key] = one
 
 
-def _is_product(node: Any) -> bool:
-    return type(getattr(node, "op", None)) is ast.MatMult
+_PRODUCTS = frozenset((ast.BinOp, ast.AugAssign))
 
 
 def _called(node: Any) -> Any:

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import called, nodes
+from kinlab.doctor.bytecode.syntax import called, nodes, pieces
 from kinlab.doctor.changes import Case, table_of
 from kinlab.doctor.glossary.linkage import linkage_meanings
 from kinlab.doctor.glossary.textbook import Glossary, meanings
@@ -187,7 +187,9 @@ class LineSearch:
         with quietly():
             most = _WEIGHED // 3 if self.stand else _WEIGHED
             every = chosen(self.asked, self.observed, self.known, self.dimensions, below, most)
-            tried = self._in_turn(sorted(every, key=self._dear))
+            more = self._waits()
+            dear = {edit: self.likely(edit) + more[edit.part] for edit in every}
+            tried = self._in_turn(sorted(every, key=dear.__getitem__))
             variants = Variants(self.trial, tried)
             for turn, edit in enumerate(tried):
                 farthest = best + (_DOUBTED if doubted else _TIED)
@@ -367,10 +369,10 @@ class LineSearch:
         """Its cost, and what speaks against it."""
         return edit.cost + self.evidence.against(edit)
 
-    def _dear(self, edit: ProgramEdit) -> float:
-        """Its cost, a little more where much has to be run anew."""
-        run, whole = max(1, self.work.amounts[edit.part]), max(1, self.work.amounts[0])
-        return self.likely(edit) + _DEAR * float(np.log10(run / whole))
+    def _waits(self) -> dict[int, float]:
+        """What an edit of each part costs more where much has to be run anew."""
+        runs, whole = self.work.amounts, max(1, self.work.amounts[0])
+        return {part: _DEAR * float(np.log10(max(1, run) / whole)) for part, run in runs.items()}
 
     def _in_turn(self, ranked: list[ProgramEdit]) -> list[ProgramEdit]:
         """The likeliest first, and in turn with them those of suspected statements."""
@@ -416,11 +418,12 @@ def _add_the_same(one: ProgramEdit, other: ProgramEdit) -> bool:
 
 def _calls(edit: ProgramEdit, functions: set[str]) -> bool:
     """Whether an edit puts a call of one of some functions in."""
-    inner = (x for c in edit.changes if isinstance(c.new, ast.expr) for x in nodes(c.new))
-    put = [called(x) for x in inner if isinstance(x, ast.Call)]
-    old = nodes(edit.node) if edit.part != DATA else []
-    there = [called(x) for x in old if isinstance(x, ast.Call)]
-    return sum(x in functions for x in put) > sum(x in functions for x in there)
+    inner = (x for c in edit.changes if isinstance(c.new, ast.expr) for x in pieces(c.new))
+    put = sum(called(x) in functions for x in inner if isinstance(x, ast.Call))
+    if not put or edit.part == DATA:
+        return put > 0
+    old = (x for x in pieces(edit.node) if isinstance(x, ast.Call))
+    return put > sum(called(x) in functions for x in old)
 
 
 def _more_than(factor: ProgramEdit, edit: ProgramEdit) -> bool:

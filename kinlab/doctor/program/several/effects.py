@@ -141,13 +141,16 @@ class Effects:
         marks, goal = self.rows @ weights, float(self.goal @ weights)
         order = np.argsort(marks, kind="stable")
         line, wide = marks[order], allowance * len(weights)
+        down = order[::-1]  # what is sought ascends, and is found sooner
         found: list[Chosen] = []
         for k in range(len(marks) - 2):
-            sought = goal - marks[k] - marks[k + 1 :]
+            later = down[down > k]
+            sought = goal - marks[k] - marks[later]
             low = np.searchsorted(line, sought - wide)
             hits = np.flatnonzero(line[np.minimum(low, len(line) - 1)] - sought <= wide)
-            for i in hits[low[hits] < len(line)]:
-                one, last = k + 1 + int(i), int(np.searchsorted(line, sought[i] + wide, "right"))
+            hits = hits[low[hits] < len(line)]
+            for i in hits[np.argsort(later[hits])]:
+                one, last = int(later[i]), int(np.searchsorted(line, sought[i] + wide, "right"))
                 for other in order[low[i] : last]:
                     total = self.rows[[k, one, other]].sum(axis=0)
                     if other > one and np.max(np.abs(total - self.goal)) <= allowance:

@@ -403,8 +403,11 @@ class TriedTogether:
         for n in range(2, len(few)):
             # what n does beside i, and beside j
             inner = both[n, :n, told]
-            fits = left[:n, :n] - inner[:, None] - inner[None, :] + each[n, told]
-            ends = np.argwhere(np.triu(np.abs(fits) <= self.known.near, 1))
+            fits = left[:n, :n] - inner[:, None]
+            fits -= inner
+            fits += each[n, told]
+            ends = np.argwhere(np.abs(fits, out=fits) <= self.known.near)
+            ends = ends[ends[:, 0] < ends[:, 1]]
             whole = both[n, ends].sum(axis=1) + both[ends[:, 0], ends[:, 1]]
             whole -= each[ends].sum(axis=1) + each[n]
             for i, j in ends[(np.abs(whole - goal) <= self.known.near).all(axis=1)].tolist():

@@ -125,8 +125,8 @@ class _Quantities:
         known &= low < len(self.marks)
         known &= self.marks[np.minimum(low, len(self.marks) - 1)] <= mark + wide
         for k in np.flatnonzero(known):  # one number of each has told most
-            gaps = np.minimum(
-                *(np.abs(self.values - x).max(axis=1) for x in (values[k], -values[k]))
+            known[k] = not zeros_and_ones(values[k]) and any(
+                np.abs(self.values - x).max(axis=1).min() <= near[k]
+                for x in (values[k], -values[k])
             )
-            known[k] = not zeros_and_ones(values[k]) and gaps.min() <= near[k]
         return known

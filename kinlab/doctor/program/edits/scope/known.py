@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import called, copied, names, nodes
+from kinlab.doctor.bytecode.syntax import called, copied, names, nodes, text_of
 from kinlab.doctor.program.edits.chains import without_numbers
 from kinlab.doctor.program.edits.scope import counters, functions, idle, members, pieces, terms
 from kinlab.doctor.program.edits.scope import names as of_names
@@ -163,29 +163,29 @@ class Knowledge:
                 self.levels[node.id] = float(seen.values[0])
             if seen.whole and seen.shape == () and {*map(float, seen.values)} != {-1.0, 1.0}:
                 return  # it counts, and is no sign
-        text = ast.unparse(node)
+        text = text_of(node)
         if not (gathered - {*self.counters}).isdisjoint(names(node)) or len(text) > _LONG:
             return
         known = self.pieces.setdefault(seen.shape, {})
         for other in pieces.others_of_the_row(node, self.observed):
-            known.setdefault(ast.unparse(other), other)
+            known.setdefault(text_of(other), other)
         for other in self._members.beside(node, seen.shape, self.counters):
-            known.setdefault(ast.unparse(other), other)
+            known.setdefault(text_of(other), other)
         own = known[text] = known.get(text) or copied(node)
         bare = without_numbers(node) if seen.shape == () else None
         if bare is not None:
-            known.setdefault(ast.unparse(bare), copied(bare))
+            known.setdefault(text_of(bare), copied(bare))
         if isinstance(own, ast.Call) and called(own) in ANGLES and own.args:
             self._read_angle(own, known)
 
     def _read_angle(self, call: ast.Call, known: dict[str, ast.expr]) -> None:
         """What a sine or cosine is taken of; the other of the two is as good a piece."""
-        text = ast.unparse(call.args[0])
+        text = text_of(call.args[0])
         self.angles.setdefault(text, call.args[0])
         self.taken[text] += 1
         turned = Turned().visit(copied(call))
         if isinstance(turned.func, ast.Attribute) or turned.func.id in self._angular:
-            known.setdefault(ast.unparse(turned), turned)
+            known.setdefault(text_of(turned), turned)
 
     def _tell_names(self, tree: ast.FunctionDef) -> None:
         """What its names are: arguments, angles, what is set together."""
@@ -229,7 +229,7 @@ class Knowledge:
     def _put_as_idle(self, found: Iterable[pieces.Sized]) -> None:
         for shape, piece in found:
             self._put(shape, piece)
-            self.idle_entries.add(ast.unparse(piece))
+            self.idle_entries.add(text_of(piece))
 
     def _put_names(self, trial: Trial) -> None:
         """Names that nothing uses and those that it may have forgotten, and their entries."""

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import called, names, nodes
+from kinlab.doctor.bytecode.syntax import called, names, pieces, text_of
 from kinlab.doctor.program.edits.numbers.data import is_number
 from kinlab.doctor.program.edits.scope.known import Knowledge
 from kinlab.doctor.program.observed import Observed, Shape
@@ -76,10 +76,12 @@ class Scope(Knowledge):
 
     def uses_idle(self, node: ast.AST) -> bool:
         """Whether there is anything in it that is set or given, and used nowhere."""
-        if not self.unused.isdisjoint(names(node)):
+        if self.unused and not self.unused.isdisjoint(names(node)):
             return True
-        entries = [one for one in nodes(node) if isinstance(one, ast.Subscript)]
-        return bool(self.idle_entries) and any(ast.unparse(x) in self.idle_entries for x in entries)
+        if not self.idle_entries:
+            return False
+        entries = (one for one in pieces(node) if isinstance(one, ast.Subscript))
+        return any(text_of(one) in self.idle_entries for one in entries)
 
     def dear(self, node: ast.expr) -> float:
         """What a piece costs more than one that is used nowhere."""
@@ -93,7 +95,7 @@ class Scope(Knowledge):
         """Whether a call takes the product of two vectors, by whatever name."""
         if not isinstance(node, ast.Call) or len(node.args) != 2:
             return False
-        own = self.cross is not None and ast.unparse(node.func) == ast.unparse(self.cross)
+        own = self.cross is not None and text_of(node.func) == text_of(self.cross)
         return own or called(node) == "cross"
 
     def is_pose(self, node: ast.AST) -> bool:
