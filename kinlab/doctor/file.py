@@ -141,11 +141,22 @@ def _judged_with(found: Diagnosis, file: FormulaFile) -> Diagnosis:
         return found
     if not any(one.turned for one in unread) and _names_as_much(found, file):
         return found
+    said = not_judged(found.title, unread[0].words)
+    return replace(found, causes=(), partial=(), proved=(), form="words", remarks=(said,))
+
+
+def not_judged(entry: str, words: str) -> str:
+    """What is told of a formula with words beside it that nobody has listed.
+
+    Args:
+        entry: what people call it.
+        words: these words.
+    """
     said = _(
         "{entry}: not judged. The words {words!r} beside the formula were not read and may say "
         "when it holds or of what it is; leave them out if it is meant for every state"
-    ).format(entry=found.title, words=unread[0].words)
-    return replace(found, causes=(), partial=(), proved=(), form="words", remarks=(said,))
+    )
+    return said.format(entry=entry, words=words)
 
 
 def _names_as_much(found: Diagnosis, file: FormulaFile) -> bool:

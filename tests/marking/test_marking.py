@@ -90,6 +90,8 @@ def test_words_that_were_not_read_cost_no_point_as_a_slip():
     found = marked({"q1": "for the stretched arm: x = l1 + l2", "q2": f"Hence g1 = {G1}"})
     assert found["q1"].verdict == "could not be read" and "stretched arm" in found["q1"].remark
     assert found["q2"].verdict == "right"
+    own = marked({"q4": "for the stretched arm q4 = m1*g*l1"})["q4"]
+    assert own.verdict == "could not be read" and "stretched arm" in own.remark
 
 
 def test_levels_of_feedback():
