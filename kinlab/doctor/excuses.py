@@ -255,6 +255,8 @@ def _names_numbers(text: Written, derived: Reference) -> bool:
 def _may_stand(text: Written, derived: Reference) -> bool:
     """Whether a number in a text may stand for the robot's, 0.25 for l1**2, or l1 for l2."""
     values = [(name[0], abs(float(x))) for name, x in derived.values.items() if x]
+    if not isinstance(derived, Derivation):
+        return True
     if not _names_numbers(text, derived) or len({*values}) < len(values):
         return True
     own = {abs(float(x)) for x in derived.values.values()} - {0.0, 1.0}

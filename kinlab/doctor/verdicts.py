@@ -300,7 +300,10 @@ def elsewhere(
         known = known and holds is not None
     plain = all(n.value.denominator <= 12 for _, n in tree.nodes(text.node) if n.op == "num")
     told = gap if plain and known else 0.0
-    return _kept(text, right, own, at, missing, derived) if missing or told else [], told
+    # a linkage with other lengths may not close, or close the other way
+    serial = isinstance(derived, Derivation)
+    told_of = bool(missing) or (bool(told) and serial)
+    return _kept(text, right, own, at, missing, derived) if told_of else [], told
 
 
 def unnamed(text: Written | None, derived: Reference, poly: Any) -> set[str]:

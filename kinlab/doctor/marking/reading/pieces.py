@@ -6,6 +6,8 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
+from kinlab.formulas.handed.vocabulary import is_program
+
 _NOTHING = (
     r"(?:i\s*(?:do\s*not|don'?t|don’t)\s*know(?:\s*(?:it|this|how|that))?|i\s*have\s*no\s*idea|no\s*idea|idk|n\.?\s?/?\s?a\.?"
     r"|to\s*do|tbd|none|nothing|no\s*(?:answer|solution)|not\s*(?:done|solved|answered)|skipped?|sorry|unknown"
@@ -18,11 +20,6 @@ _NO_ANSWER = re.compile(
 )
 _LONGEST = 60
 
-_KNOWN = frozenset(
-    """sin cos tan asin acos atan atan2 sqrt arcsin arccos arctan arctan2 exp log abs theta alpha
-    beta gamma delta omega tau phi psi dot ddot math numpy pow power mod sign cosh sinh tanh det
-    left right frac begin end bmatrix pmatrix array where""".split()  # noqa: SIM905
-)
 _COMMAND = re.compile(r"\\[A-Za-z]+\*?(?:\{[a-z]*matrix\*?\}|\{array\}(?:\{\w*\})?)?")
 _LETTERS = re.compile(r"[^\W\d_]+")
 _SIGNS = re.compile(r"[-+*/^=\d(\\]")
@@ -62,7 +59,6 @@ def is_formula(text: str) -> bool:
     """
     plain = _COMMAND.sub(" ", text[:4000])
     words = [word for word in _LETTERS.findall(plain) if len(word) > 1]
-    sentence = any(
-        (len(word) > 3 or not word.isascii()) and word.lower() not in _KNOWN for word in words
-    )
+    words = [word for word in words if len(word) > 3 or not word.isascii()]
+    sentence = any(not is_program(word) and word.lower() != "where" for word in words)
     return bool(_SIGNS.search(text)) and not sentence
