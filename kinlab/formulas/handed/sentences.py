@@ -36,7 +36,7 @@ _OPERATOR = re.compile(r"[*/^+=<>]")
 _UNIT = re.compile(r"\s*(?:(?:SI|the|units?|of)\s+)*(?:mm|cm|dm|km|m|kg|N|Nm|J|rad|s|deg)\b")
 _GAP = "\0"
 _BETWEEN = re.compile(
-    rf"(?<=\0)\s*[,;:]?\s*\b[{LATIN}]{{1,3}}\b(?=[\s,;:.!?]*\0)|(?:^|(?<=[.,;:]\s))[{LATIN}]{{1,3}}(?=\s+\0)"
+    rf"(?<=\0)\s*[,;:]?\s*\b[{LATIN}]{{1,3}}\b(?=[\s,;:.!?]*\0)|(?:^|(?<=\()|(?<=[.,;:]\s))[{LATIN}]{{1,3}}(?=\s+\0)"
 )
 """A short word that no list has, between others or behind a comma."""
 _BRACKETS = re.compile(r"\(\s*[\0\s,.;:?!'-]*\0[\0\s,.;:?!'-]*\)|\[\s*\0[\0\s]*\]")
@@ -54,7 +54,7 @@ _FRONT = re.compile(
     r"|-\s(?=[\\A-Za-z][^=\n]{0,30}=))+"
 )
 _BACK = re.compile(
-    r"(?:[\s,;:!?'’–—#%~(]|/{2}|/\*|\*/|=>|->|\\q?quad|\\[,;! ]|(?<=[\s\w)}\]])\.)+$"
+    r"(?:-{2,}|[\s,;:!?'’–—#%~(]|/{2}|/\*|\*/|=>|->|\\q?quad|\\[,;! ]|(?<=[\s\w)}\]])\.)+$"
 )
 _SIDES = re.compile(r"^(?P<left>[^=]{1,80}?)(?P<sign>\s*&?\s*:?==?(?!=))(?P<right>.*)$", re.DOTALL)
 _ALIGNED = re.compile(
@@ -130,7 +130,10 @@ def _is_word(word: str, text: str, found: re.Match[str]) -> bool:
     listed = is_listed(word)
     if is_program(word) or re.match(r"\s*&?\s*:?=", behind):
         return False
-    if front[-1:] in ("*", "^", "+", "-", "=") or (front[-1:] == "/" and front[-2:] != "//"):
+    dash = front.endswith("--")
+    if (front[-1:] in ("*", "^", "+", "-", "=") and not dash) or (
+        front[-1:] == "/" and front[-2:] != "//"
+    ):
         return False
     if re.search(r"[\w*/^]\($", front) or re.match(r"\s?(?:[*/^](?![*/])|\+)", behind):
         return False
