@@ -342,3 +342,68 @@ def test_numbers_of_a_row_that_are_exchanged_are_told_as_that(tmp_path) -> None:
     told = told[1]
     assert told[0].kinds == ("entries swapped",)
     assert "0.0203, 0.4318)" in told[0].sentence.split("should be")[1]
+
+
+HALF_BESIDE = """
+import numpy as np
+
+L = [0.5, 0.4, 0.25]
+M = [3.0, 2.0, 1.0]
+C = [np.array([L[i]/2, 0, 0]) for i in range(3)]
+P = [np.array([0.0, 0, 0]), np.array([0.5, 0, 0]), np.array([0.4, 0, 0]), np.array([0.25, 0, 0])]
+Z = np.array([0.0, 0.0, 1.0])
+
+
+def rot(t):
+    c, s = np.cos(t), np.sin(t)
+    return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+
+
+def f(q):
+    R = [rot(t) for t in q] + [np.eye(3)]
+    up, F = np.array([0.0, 9.81, 0.0]), []
+    for i in range(3):
+        up = R[i].T @ up
+        F.append(M[i]*up)
+    force, moment, tau = np.zeros(3), np.zeros(3), np.zeros(3)
+    for i in (2, 1, 0):
+        outer = R[i + 1] @ force
+        moment = R[i + 1] @ moment + np.cross(C[i], F[i]) + np.cross(P[i + 1], outer)
+        force = outer + F[i]
+        tau[i] = moment @ Z
+    return tau
+"""
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [("R[i].T @ up", "R[i] @ up"), ("cross(P[i + 1], outer)", "cross(P[i], outer)")],
+)
+def test_a_half_in_a_list_of_lengths_is_a_length(right, wrong, tmp_path) -> None:
+    """0.5 beside 0.4 and 0.25, so that the lines are right of other arms, too."""
+    path = tmp_path / "half.py"
+    path.write_text(HALF_BESIDE.replace(right, wrong))
+    found = kl.diagnose("planar3r", "gravity_torques", written(path.read_text(), path))
+    line = next(k for k, x in enumerate(HALF_BESIDE.split("\n"), 1) if right in x)
+    assert lines_named(found.causes[0].sentence) == [line]
+
+
+IDLE = """
+import numpy as np
+
+def f(q):
+    m1, m2, l1, lc1, lc2 = 2.0, 1.5, 0.5, 0.25, 0.2
+    I1, I2 = 2.0*0.5**2/12, 1.5*0.4**2/12
+    d11 = m1*lc1**2 + m2*(l1**2 + lc2**2 + 2*l1*lc2*np.cos(q[1])) + I1 + I2
+    d12 = m2*(lc2**2 + l1*lc2*np.cos(q[1])) + I2
+    return np.array([[d11, d12], [d12, m2*lc2**2 + I2]])
+"""
+
+
+def test_a_length_for_a_centre_that_nothing_uses_any_more(tmp_path) -> None:
+    """Not m1*(l1 - lc1)**2, which has the same value."""
+    path = tmp_path / "idle.py"
+    path.write_text(IDLE.replace("m1*lc1**2", "m1*l1**2"))
+    found = kl.diagnose("planar2r_rods", "mass_matrix", written(path.read_text(), path))
+    assert found.causes[0].kinds[-1] in ("name", "parameter")
+    assert "should be `d11 = m1*lc1**2 + m2*" in found.causes[0].sentence

@@ -37,6 +37,8 @@ _FEW_MASSES = 2
 """Masses of which a sum is tried anyway."""
 _TWIST = 6
 """Rows of a Jacobian, or of a twist."""
+_REST = 1.12
+"""Of a length what is behind the centre, l1 - lc1: rather lc1 itself."""
 _NEXT_ANGLE = 1.08
 """Cost of the angle of the joint before, or next, in a sum: c12 for c2."""
 _OF_AN_ANGLE = 0.1
@@ -349,7 +351,8 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
             dear = 0.0 if " + ".join(both) in scope.pieces_here(()) else dear
             if _stems(text, own) in scope.sums:  # a2 + r2 beside a3 + r3
                 yield here.instead(ast.BinOp(scalar, ast.Add(), node), "missing term", _AS_THERE)
-            for op, cost in ((ast.Add(), 1.0), (ast.Sub(), 1.05)):
+            rest = _REST if text[0] in "lLar" and _of_one_link(text, own) else 1.05
+            for op, cost in ((ast.Add(), 1.0), (ast.Sub(), rest)):
                 new = ast.BinOp(node, op, scalar)
                 yield here.instead(new, "missing term", cost + dear)
 

@@ -220,9 +220,20 @@ class _Reader:
                 value = -one.value if id(one.place.node) in self.negative else one.value
                 unknown.setdefault((key, value, own), []).append((one, left))
         unsure = 0
-        for (*_key, own), group in unknown.items():
+        surely: dict[Any, set[str]] = {}
+        for (key, _value, own), group in unknown.items():
+            if own and key:
+                surely.setdefault(key, set()).update(
+                    self.cells[k].kind for _one, some in group for k in some
+                )
+        for (key, _value, own), group in unknown.items():
             kinds = [*self._kinds(group)]
-            stays: list[_Option] = [] if own else [()]
+            # 0.5 in a list beside 0.4, a length, is no half
+            alike = [
+                x for x in kinds if {self.cells[k].kind for _one, k in x} & surely.get(key, set())
+            ]
+            kinds = alike or kinds
+            stays: list[_Option] = [] if own or alike else [()]
             once = not any(one.given for one, _some in group)
             self.items.append(_Item((*kinds, *stays), once))
             unsure += own and len(kinds) > 1

@@ -148,6 +148,20 @@ class Knowledge:
                 target, value = node.targets[0], node.value
                 for name, shape in of_names.unpacked(target, value, trial, self.observed):
                     self.shapes.setdefault(name, shape)
+                self._read_levels(target, value)
+
+    def _read_levels(self, target: ast.expr, value: ast.expr) -> None:
+        """Numbers of names that are set, also of one that nothing uses: ``l1, lc1 = 0.5, 0.25``."""
+        lists = isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple | ast.List)
+        pairs = zip(target.elts, value.elts, strict=False) if lists else [(target, value)]  # type: ignore[attr-defined]
+        for name, given in pairs:
+            if not isinstance(name, ast.Name) or name.id in self.levels:
+                continue
+            seen = self.observed.of(given)
+            if isinstance(given, ast.Constant) and type(given.value) is float:
+                self.levels[name.id] = given.value
+            elif seen is not None and seen.shape == () and len({*map(float, seen.values)}) == 1:
+                self.levels[name.id] = float(seen.values[0])
 
     def _read_expression(self, node: ast.expr, gathered: set[str]) -> None:
         seen = self.observed.of(node)
