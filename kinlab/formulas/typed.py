@@ -495,7 +495,7 @@ def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
     lines = _equations(text)
     lines.sort(key=lambda line: (begins_with(line, entry), "=" not in line))
     if lines and not begins_with(lines[-1], entry) and "=" in lines[-1]:
-        lines.sort(key=lambda line: not _explains_another(line, lines))
+        lines.sort(key=lambda line: not explains_another(line, lines))
     own = [line.partition("=") for line in lines[:-1]]
     if not own or any(line.count("=") != 1 for line in lines[:-1]):
         return {}, text
@@ -509,8 +509,13 @@ def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
     return formulas, f"{dollars}{lines[-1]}{dollars}"
 
 
-def _explains_another(line: str, lines: list[str]) -> bool:
-    """Whether a line gives a name that another line uses."""
+def explains_another(line: str, lines: list[str]) -> bool:
+    """Whether a line gives a name that another line uses.
+
+    Args:
+        line: an equation.
+        lines: all there are.
+    """
     name, *others = (re.sub(r"[_{}\\\s]", "", one) for one in (line.partition("=")[0], *lines))
     pattern = re.compile(rf"(?<![A-Za-z]){re.escape(name)}(?!\d)")
     return any(pattern.search(other.partition("=")[2]) for other in others)

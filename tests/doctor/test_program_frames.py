@@ -85,7 +85,7 @@ def test_what_a_loop_multiplies_may_be_from_the_last_to_the_first():
     assert right in told.causes[0].sentence.split("should be")[1]
 
 
-TOOL = """
+PUMA = """
 import numpy as np
 H = np.pi/2
 rows = [(0.0, 0.0, H), (0.4318, 0.0, 0.0), (0.0203, 0.15005, -H), (0.0, 0.4318, H),
@@ -95,7 +95,10 @@ def A(t, a, d, alpha):
     c, s, ca, sa = np.cos(t), np.sin(t), np.cos(alpha), np.sin(alpha)
     return np.array([[c, -s*ca, s*sa, a*c], [s, c*ca, -c*sa, a*s], [0, sa, ca, d], [0, 0, 0, 1]])
 
-def f(q):
+"""
+TOOL = (
+    PUMA
+    + """def f(q):
     J = np.zeros((6, 6))
     T = np.eye(4)
     for k in reversed(range(6)):
@@ -107,6 +110,7 @@ def f(q):
         J[3:, k] = axis
     return J
 """
+)
 
 
 @pytest.mark.parametrize(
@@ -124,17 +128,9 @@ def test_a_row_of_named_columns_is_told_for_a_column(right, wrong):
     assert "x[2], y[2], z[2]" in told.causes[0].sentence
 
 
-SPACE = """
-import numpy as np
-H = np.pi/2
-rows = [(0.0, 0.0, H), (0.4318, 0.0, 0.0), (0.0203, 0.15005, -H), (0.0, 0.4318, H),
-        (0.0, 0.0, -H), (0.0, 0.0, 0.0)]
-
-def A(t, a, d, alpha):
-    c, s, ca, sa = np.cos(t), np.sin(t), np.cos(alpha), np.sin(alpha)
-    return np.array([[c, -s*ca, s*sa, a*c], [s, c*ca, -c*sa, a*s], [0, sa, ca, d], [0, 0, 0, 1]])
-
-def f(q):
+SPACE = (
+    PUMA
+    + """def f(q):
     T = np.eye(4)
     points, axes = [], []
     for k in range(6):
@@ -147,6 +143,7 @@ def f(q):
         T = T @ A(q[k], *rows[k])
     return np.array([np.hstack([np.cross(z, T[:3, 3] - p), z]) for z, p in zip(axes, points)]).T
 """
+)
 
 
 def test_a_named_column_is_told_for_a_row():

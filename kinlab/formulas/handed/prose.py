@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 
 from kinlab.formulas.handed.vocabulary import BEHIND, CHINESE, LATIN, chinese_left, says_nothing
 
@@ -169,7 +170,8 @@ def left_over(text: str, found: Iterable[tuple[str, str]], names: Iterable[str])
     return Doubt(phrase, turned) if phrase else None
 
 
-def _proses(text: str) -> list[tuple[str, bool]]:
+@lru_cache(maxsize=64)
+def _proses(text: str) -> tuple[tuple[str, bool], ...]:
     """The pieces of a text in which words may stand, and whether letters may be products there."""
     left = text.partition("=")[0] if "=" in text else ""
     below = " ".join(_FONT.sub(r" \1 ", one[0].lstrip("_")) for one in _BELOW.finditer(left))
@@ -180,7 +182,7 @@ def _proses(text: str) -> list[tuple[str, bool]]:
     typeset = "\\" in outside
     if MATHS.search(outside):
         outside, typeset = MATHS.sub(" ; ", outside), False
-    return [*said, (_COMMAND.sub(" ; ", outside), typeset)]
+    return (*said, (_COMMAND.sub(" ; ", outside), typeset))
 
 
 def _cut(prose: str) -> tuple[str, str]:

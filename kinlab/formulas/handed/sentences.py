@@ -12,7 +12,7 @@ import re
 from kinlab.formulas.handed.prose import MATHS, is_condition
 from kinlab.formulas.handed.vocabulary import CHINESE, LATIN, is_listed, is_program
 from kinlab.formulas.signs.brackets import parts_at
-from kinlab.formulas.typed import begins_with
+from kinlab.formulas.typed import begins_with, explains_another
 
 _PROGRAM = re.compile(r"\b(?:def|lambda|return|import)\b|```|^\s*`")
 _FONT = re.compile(r"\\(?:text|textrm|textit|textbf|mbox|textnormal|hbox)\s*\{([^{}]*)\}")
@@ -205,7 +205,8 @@ def _of_entry(pieces: list[str], entry: str) -> list[str]:
         given = {_plain(one.partition("=")[0]) for one in equations}
         formulas = [one for one in formulas if len(one) > _SHORT]
         formulas = formulas or [one for one in pieces[:1] if _plain(one) in given]
-        mine = formulas or _last(equations) or [one for one in pieces if "=" in one]
+        last = [one for one in equations if not explains_another(one, equations)]
+        mine = formulas or last or [one for one in pieces if "=" in one]
     if len({_plain(one) for one in mine}) != 1:
         return []
     kept = [mine[0]]
@@ -217,15 +218,6 @@ def _of_entry(pieces: list[str], entry: str) -> list[str]:
         used += _plain(" ".join(one.partition("=")[2] for one in more))
         others = [one for one in others if not any(one is known for known in more)]
     return kept
-
-
-def _last(equations: list[str]) -> list[str]:
-    """The equations whose names no other one uses."""
-    names = [_plain(one.partition("=")[0]) for one in equations]
-    used = [_plain(one.partition("=")[2]) for one in equations]
-    return [
-        one for one, name in zip(equations, names, strict=True) if not any(name in x for x in used)
-    ]
 
 
 def _equations(piece: str) -> list[str]:
