@@ -44,6 +44,7 @@ from kinlab.formulas.text import canonical, parse
 from kinlab.formulas.tree import Node
 from kinlab.host.files import read_text
 from kinlab.host.language import N_, _
+from kinlab.tolerances import TOLERANCES
 
 _FEWEST = 10
 """States that :func:`prepare` asks for at least."""
@@ -134,12 +135,14 @@ def _judged_with(found: Diagnosis, file: FormulaFile) -> Diagnosis:
     """A diagnosis of a formula with words that were not read: right, or not judged.
 
     What holds in a special case alone has fewer terms and names; a slip that leaves them as many
-    is none of that, unless the words tell of other axes.
+    is none of that, unless the words tell of other axes. The sign of the whole may be another sense
+    of turning, or another gravity, by whatever words: ``on the ceiling``.
     """
     unread = [file.unread[one] for one in found.function.split(", ") if one in file.unread]
     if found.agrees or not unread:
         return found
-    if not any(one.turned for one in unread) and _names_as_much(found, file):
+    turned = any(one.turned for one in unread) or _is_negative(found)
+    if not turned and _names_as_much(found, file):
         return found
     said = not_judged(found.title, unread[0].words)
     return replace(found, causes=(), partial=(), proved=(), form="words", remarks=(said,))
@@ -157,6 +160,13 @@ def not_judged(entry: str, words: str) -> str:
         "when it holds or of what it is; leave them out if it is meant for every state"
     )
     return said.format(entry=entry, words=words)
+
+
+def _is_negative(found: Diagnosis) -> bool:
+    """Whether a formula is minus the right one, as far as its worst state tells."""
+    if found.hand is None or found.engine is None:
+        return False
+    return bool(np.allclose(found.hand, -found.engine, rtol=TOLERANCES.formula_agrees, atol=0.0))
 
 
 def _names_as_much(found: Diagnosis, file: FormulaFile) -> bool:

@@ -253,6 +253,14 @@ def test_a_slip_that_is_no_special_case_is_told_beside_any_words(text, said):
         refused("planar2r", "x", text, SHOWN)
 
 
+@pytest.mark.parametrize(
+    ("entry", "text"),
+    [("g2", f"on the ceiling: g2 = -{G2}"), ("g2", f"hanging upside down: g2 = -{G2}"), ("x", "behind the wall: x = -l1*c1 - l2*c12")],
+)  # fmt: skip
+def test_the_sign_of_the_whole_beside_unread_words_is_not_judged(entry, text):
+    refused("planar2r", entry, text, SHOWN)
+
+
 def test_such_words_beside_a_right_formula_do_no_harm():
     right("planar2r", "x", f"Whatever the pose of the elbow may be: x = {X}")
 
