@@ -132,15 +132,18 @@ _UNCONDITIONED = {"sign", "sin/cos", "index", "power", "argument"}
 
 
 def _judged_with(found: Diagnosis, file: FormulaFile) -> Diagnosis:
-    """A diagnosis of a formula with words that were not read: right, or not judged.
+    """A diagnosis of a formula with words that were not read: right as it stands, or not judged.
 
     What holds in a special case alone has fewer terms and names; a slip that leaves them as many
     is none of that, unless the words tell of other axes. The sign of the whole may be another sense
     of turning, or another gravity, by whatever words: ``on the ceiling``.
     """
     unread = [file.unread[one] for one in found.function.split(", ") if one in file.unread]
-    if found.agrees or not unread:
+    if not unread:
         return found
+    if found.agrees:
+        said = _("the words {words!r} beside the formula were not read: it is judged without them")
+        return replace(found, remarks=(*found.remarks, said.format(words=unread[0].words)))
     turned = any(one.turned for one in unread) or _is_negative(found)
     if not turned and _names_as_much(found, file):
         return found

@@ -407,3 +407,37 @@ def test_a_length_for_a_centre_that_nothing_uses_any_more(tmp_path) -> None:
     found = kl.diagnose("planar2r_rods", "mass_matrix", written(path.read_text(), path))
     assert found.causes[0].kinds[-1] in ("name", "parameter")
     assert "should be `d11 = m1*lc1**2 + m2*" in found.causes[0].sentence
+
+
+AT_THE_FRAME_BEFORE = """
+import numpy as np
+
+d1, a2, d3 = 0.4, 0.5, 0.2
+m2, m3, g = 2.0, 1.5, 9.81
+
+def f(q):
+    weight = (m2/2 + m3)*a2
+    return np.array([0.0, weight*g*np.cos(q[1]), 0.0])
+"""
+
+
+def test_a_centre_at_the_frame_before_goes_along_with_it() -> None:
+    """It is at -d of its link: a program needs no number of its own for it."""
+    links = [
+        kl.DHLink(d=0.4, alpha=np.pi / 2, mass=1.0),
+        kl.DHLink(a=0.5, mass=2.0, com=(-0.25, 0, 0)),
+        kl.DHLink(d=0.2, mass=1.5, com=(0, 0, -0.2), inertia=np.eye(3)),
+    ]
+    robot = kl.Robot.from_dh(kl.DHTable("own", "standard", links))
+    function = written(AT_THE_FRAME_BEFORE)
+    assert worst(robot, "gravity_torques", function) < 1e-12
+    trial = Trial(read(function))
+    other = arm_apart(robot, trial, Observed(trial, [(np.array([0.3, -0.7, 0.2]),)]))
+    last = other.robot.table.links[2]
+    assert other.whole and last.com[2] == pytest.approx(-last.d) and last.d != 0.2
+    assert any(worst_in(trial, way, other.robot, "gravity_torques") < 1e-12 for way in other.ways)
+
+
+def worst_in(trial, way, robot, quantity) -> float:
+    with changed(trial, way):
+        return worst(robot, quantity, trial.function)

@@ -261,8 +261,17 @@ def test_the_sign_of_the_whole_beside_unread_words_is_not_judged(entry, text):
     refused("planar2r", entry, text, SHOWN)
 
 
-def test_such_words_beside_a_right_formula_do_no_harm():
-    right("planar2r", "x", f"Whatever the pose of the elbow may be: x = {X}")
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (f"Whatever the pose of the elbow may be: x = {X}", "Whatever the pose of the elbow may be"),
+        (f"x = {X} but this is nonsense", "but this is nonsense"), (f"x = {X}, in inches", "in inches"),
+    ],
+)  # fmt: skip
+def test_such_words_beside_a_right_formula_are_said(text, words):
+    (said,) = kl.diagnose("planar2r", "x", text).remarks
+    assert repr(words) in said
+    assert right("planar2r", "x", f"From the figure we get x = {X}").remarks == ()
 
 
 def test_the_words_that_were_not_read_are_said_and_cost_one_entry_alone():

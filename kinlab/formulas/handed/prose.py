@@ -35,6 +35,9 @@ def _words(least: int) -> re.Pattern[str]:
 _WORDS = {typeset: _words(least) for typeset, least in ((False, 2), (True, 4))}
 """In LaTeX a few letters side by side are a product."""
 _PHRASE = re.compile(rf"[{LATIN}{CHINESE}\d'’ ,.;:-]*")
+_SIGNS_IN = ("*", "/", "^", "+", "=", "(", ")", "}", "]")
+_ENDING = re.compile(rf"^(?:[{LATIN}]*\d\w*|\w)[ ,.;:-]+(?=\S)")
+"""The last name of a formula, in front of words."""
 _FRAME = re.compile(
     r"\bpart \(?[a-h1-9]\b"
     r"|\b(?:base|world|inertial|fixed|reference)[ -](?:frame|system|coordinates?)\b"
@@ -212,7 +215,10 @@ def around(prose: str, start: int, end: int) -> str:
     behind = _PHRASE.match(prose, end)
     front = _PHRASE.match(prose[:start][::-1])
     end += len(behind[0]) if behind else 0
-    said = prose[start - len(front[0] if front else "") : end].strip(" ,.;:-")
+    start -= len(front[0]) if front else 0
+    said = prose[start:end].strip(" ,.;:-")
+    if prose[:start].rstrip()[-1:] in _SIGNS_IN:
+        said = _ENDING.sub("", said)
     if prose[end : end + 1] in ("=", "_") and " " in said:
         said = said.rpartition(" ")[0]  # the name of the formula
     return said.strip(" ,.;:-")[:_MOST]

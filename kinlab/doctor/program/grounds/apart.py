@@ -381,7 +381,8 @@ class _Reader:
             return left
         lengths = [k for k in free if self.cells[k].kind in ("length", "centre")]
         some = {*left, *(k for k in lengths if link in (None, *self.cells[k].links))}
-        if first.kind not in ("length", "centre") or len({self.cells[k].value for k in some}) > 1:
+        sizes = {abs(self.cells[k].value) for k in some}  # the frame before is at -d
+        if first.kind not in ("length", "centre") or len(sizes) > 1:
             return left
         for k in some:
             self.tied.setdefault(self.cells[k].which, first.which)
