@@ -51,6 +51,16 @@ _OTHERS = 3
 """Causes that are told beside the first."""
 
 
+def not_judged(entry: str, reason: str) -> str:
+    """What is told of a formula that was not judged.
+
+    Args:
+        entry: what people call it.
+        reason: why, a clause.
+    """
+    return _("{entry}: not judged: {reason}").format(entry=entry, reason=reason)
+
+
 @dataclass(frozen=True)
 class Cause:
     """One explanation that accounts for every state.
@@ -185,7 +195,7 @@ class Diagnosis(Answer):
         if self.causes:
             return self.causes[0].sentence
         if self.form == "words":
-            return self.remarks[0]
+            return not_judged(self.title, self.remarks[0])
         if self.form == "near":
             said = _(
                 "{function} is {quantity} of {robot} to {digits} digits only: rounded constants, "

@@ -147,22 +147,21 @@ def _judged_with(found: Diagnosis, file: FormulaFile) -> Diagnosis:
     turned = any(one.turned for one in unread) or _is_negative(found)
     if not turned and _names_as_much(found, file):
         return found
-    said = not_judged(found.title, unread[0].words)
+    said = words_unread(unread[0].words)
     return replace(found, causes=(), partial=(), proved=(), form="words", remarks=(said,))
 
 
-def not_judged(entry: str, words: str) -> str:
+def words_unread(words: str) -> str:
     """What is told of a formula with words beside it that nobody has listed.
 
     Args:
-        entry: what people call it.
         words: these words.
     """
     said = _(
-        "{entry}: not judged. The words {words!r} beside the formula were not read and may say "
-        "when it holds or of what it is; leave them out if it is meant for every state"
+        "the words {words!r} beside the formula were not read and may say when it holds or of "
+        "what it is; leave them out if it is meant for every state"
     )
-    return said.format(entry=entry, words=words)
+    return said.format(words=words)
 
 
 def _is_negative(found: Diagnosis) -> bool:

@@ -266,12 +266,30 @@ def test_the_sign_of_the_whole_beside_unread_words_is_not_judged(entry, text):
     [
         (f"Whatever the pose of the elbow may be: x = {X}", "Whatever the pose of the elbow may be"),
         (f"x = {X} but this is nonsense", "but this is nonsense"), (f"x = {X}, in inches", "in inches"),
+        (f"x = {X} (up to the sign)", "up to the sign"),
     ],
 )  # fmt: skip
 def test_such_words_beside_a_right_formula_are_said(text, words):
     (said,) = kl.diagnose("planar2r", "x", text).remarks
     assert repr(words) in said
     assert right("planar2r", "x", f"From the figure we get x = {X}").remarks == ()
+
+
+RODS_V = "V = m1*g*l1/2*sin(q1) + m2*g*(l1*sin(q1) + l2/2*sin(q1+q2))"
+
+
+@pytest.mark.parametrize(
+    "words",
+    ["where l1 and l2 denote half the lengths of the rods", "where $l_1$ is half the length of link 1"],
+)  # fmt: skip
+def test_half_a_length_is_another_length(words):
+    refused("planar2r_rods", "V", f"{RODS_V}, {words}")
+    right(
+        "planar2r_rods",
+        "V",
+        f"{RODS_V}, where l1/2 and l2/2 are half the lengths of the uniform rods",
+    )
+    right("planar2r_rods", "V", f"{RODS_V}，其中杆为均质杆")
 
 
 def test_the_words_that_were_not_read_are_said_and_cost_one_entry_alone():

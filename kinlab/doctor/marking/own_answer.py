@@ -12,10 +12,11 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes, relative_errors
+from kinlab.check.diagnosis import not_judged
 from kinlab.doctor.entries import search
 from kinlab.doctor.entries.terms import rods_following
 from kinlab.doctor.excuses import only_for
-from kinlab.doctor.file import not_judged
+from kinlab.doctor.file import words_unread
 from kinlab.doctor.linkages.named_numbers import named_numbers
 from kinlab.doctor.marking.marks import Outcome, points_left, right_outcome, wrong_outcome
 from kinlab.doctor.marking.sheet import Question, Sheet, SheetError
@@ -63,7 +64,7 @@ def with_answer(sheet: Sheet, question: Question, student: str, file: FormulaFil
         only.update(kept)
         if kinds not in ((), ("rounded",)):
             if name in file.unread:
-                raise ExpressionError(not_judged(name, file.unread[name].words))
+                raise ExpressionError(not_judged(name, words_unread(file.unread[name].words)))
             points, right_one = points_left(question, kinds), (f"{name} = {right}",)
             return wrong_outcome(question, points, kinds, place, right_one, formulas)
     numbers = [f"{name} = {words[name]:.7g}" for name in sorted(only)]

@@ -72,6 +72,15 @@ _TURNED = re.compile(
     re.IGNORECASE,
 )
 """Words that may tell of another axis, frame or sense of turning."""
+_UP_TO = re.compile(
+    r"\bup to (?:the |a |its )?(?:\w+ )?(?:sign|factor|constant|scale|order)\w*", re.IGNORECASE
+)
+_HALVED = re.compile(
+    r"\b[lLadr]\d(?!\s*/)[^.;=/]{0,30}?\b(?:is|are|be|denotes?|means?|stands? for)"
+    r" (?:the |just |only )?half\b",
+    re.IGNORECASE,
+)
+"""What makes a link's length another one: ``where l1 and l2 denote half the lengths``."""
 _ANGLE = re.compile(r"\bangles?\b|winkel|角", re.IGNORECASE)
 _LINK = re.compile(r"\blinks?\b|\bglied|连杆|杆", re.IGNORECASE)
 _JOINT = re.compile(r"\bjoints?\b|gelenk|关节", re.IGNORECASE)
@@ -88,6 +97,7 @@ def doubtful(text: str, entry: str) -> list[tuple[str, str]]:
     for prose, typeset in _proses(text):
         front, _behind = _cut(_FRAME.sub(" ", prose))
         found += _of(front, entry, typeset) + _parts(front, entry)
+        found += [(one[0], around(prose, *one.span())) for one in _UP_TO.finditer(front)]
     return found + _conditions(text)
 
 
@@ -97,6 +107,8 @@ def explained_by(text: str) -> str:
     for prose, typeset in _proses(text):
         _front, behind = _cut(prose)
         if behind:
+            if _HALVED.search(_flat(text)):
+                found.append(("", behind.strip(" ;,.:")[:_MOST]))
             behind = _INERTIA.sub(" ", behind)
             found += [one for one in _of(behind, BEHIND, typeset) if not _used(one[0], text)]
             if _ANGLE.search(behind) and _LINK.search(behind) and not _JOINT.search(behind):
@@ -139,7 +151,7 @@ def _conditions(text: str) -> list[tuple[str, str]]:
 
 
 def _flat(text: str) -> str:
-    return re.sub(r"[{}_\\]|d{1,2}ot\b\s*", "", text)
+    return re.sub(r"[{}_\\$]|d{1,2}ot\b\s*", "", text)
 
 
 def _words_in(text: str) -> bool:

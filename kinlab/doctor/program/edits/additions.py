@@ -47,6 +47,8 @@ _MIXED = 0.96
 """Cost of a lost 2 in the mixed term of a square: a length for a distance is as soon mistaken."""
 _MIXED_SQUARE = 1.07
 """Cost of a product of two rates for a square, or of a square for it."""
+_ENTRY = 1.13
+"""Cost of a product of the program for an entry that is zero."""
 _AS_BESIDE = 1.1
 """Cost of the entry beside for a zero."""
 _AS_THERE = 0.99
@@ -212,7 +214,10 @@ def _is_mixed(here: Here) -> bool:
 
 
 def _instead_of_zero(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
-    """A name for a zero that is given on, or that is an entry: soonest d6 beside c6 and s6."""
+    """A name, or a product, for a zero that is given on, or that is an entry.
+
+    Soonest d6 beside c6 and s6.
+    """
     tables = [one for one in here.above if isinstance(one, ast.List | ast.Tuple)][-2:]
     beside = {found[1] for one in nodes(tables[0]) if (found := numbered(one))} if tables else set()
     for _text, scalar in scope.simple(()):
@@ -220,6 +225,10 @@ def _instead_of_zero(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
             own = numbered(scalar)
             less = _SAME_NUMBER if own is not None and {own[1]} == beside else 0.0
             yield here.instead(scalar, "name", 1.12 + scope.dear(scalar) - less)
+    for piece in scope.pieces_here(()).values() if tables else ():
+        if isinstance(piece, ast.BinOp) and isinstance(piece.op, ast.Mult):
+            yield here.instead(copied(piece), "missing term", _ENTRY)
+            yield here.instead(chains.opposite(copied(piece)), "missing term", _ENTRY)
 
 
 def _leftmost(node: ast.expr) -> ast.expr:
@@ -514,8 +523,9 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
             continue
         near = _BESIDE if text in siblings else _INSIDE if inside else 1.0
         dear = min(scope.dear(piece), near)
-        for op, cost in ((ast.Add(), 1.06), (ast.Sub(), 1.08)):
-            yield here.instead(ast.BinOp(node, op, piece), "missing term", cost + dear)
+        more = 0.0 if follow(node, piece) else dear  # m4 behind m3
+        for op, cost in ((ast.Add(), 1.06 + more), (ast.Sub(), 1.08 + dear)):
+            yield here.instead(ast.BinOp(node, op, piece), "missing term", cost)
         if one:
             yield here.instead(ast.BinOp(piece, ast.Sub(), node), "missing term", 1.1)
         if whole and shape == () and not dear:

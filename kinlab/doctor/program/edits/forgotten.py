@@ -26,6 +26,8 @@ _ARMS = ("p", "P", "r", "c", "C", "l", "L", "d", "s")
 _VECTOR, _TWIST, _HOMOGENEOUS = (3,), (6,), (4,)
 _DIAGONAL = 1.06
 """What it is to forget what is used nowhere on a diagonal."""
+_IDLE_DIAGONAL = 0.96
+"""The same where the matrix is given on."""
 _FEW = 8
 """Names of one kind that are tried."""
 _BOTH, _INDICES = 2, 3
@@ -66,6 +68,8 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
         return
     if isinstance(node, ast.Call) and called(node) == "zeros" and len({*shape}) == 1 < len(shape):
         yield from _with_a_diagonal(here, scope, shape[0])
+    if isinstance(node, ast.Name) and len({*shape}) == 1 < len(shape):
+        yield from _less_a_diagonal(here, scope, shape[0])
     if isinstance(node, ast.Call) and called(node) == "zeros" and len(shape) == 1:
         yield from _of_unread_rows(here, scope, shape)
     if isinstance(node, ast.Call) and called(node) == "zeros" and not _is_filled(here):
@@ -108,12 +112,25 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
             yield from _turned_matrices(here, scope, shape)
 
 
+def _less_a_diagonal(here: Here, scope: Scope, size: int) -> Iterator[ProgramEdit]:
+    """A matrix that lacks on its diagonal what nothing uses, where it is given on."""
+    if isinstance(here.parent, ast.Call | ast.Return):
+        for text in _idle_diagonals(scope, size):
+            diagonal = ast.parse(text, mode="eval").body
+            new = ast.BinOp(here.node, ast.Add(), diagonal)
+            yield here.instead(new, "missing term", _IDLE_DIAGONAL)
+
+
+def _idle_diagonals(scope: Scope, size: int) -> list[str]:
+    names = scope.shapes.items() if scope.has_numpy else ()
+    return [f"np.diag({x})" for x, shape in names if x in scope.unused and shape == (size,)]
+
+
 def _with_a_diagonal(here: Here, scope: Scope, size: int) -> Iterator[ProgramEdit]:
     """What nothing uses on the diagonal of a matrix that begins as zeros: the rotors' inertias."""
     if not scope.has_numpy:
         return
-    idle = [f"np.diag({name})" for name, shape in scope.shapes.items()
-            if name in scope.unused and shape == (size,)]  # fmt: skip
+    idle = _idle_diagonals(scope, size)
     over = {pair for one in nodes(here.above[0]) for pair in _gone_through(one)}
     idle += [
         f"np.diag([{one}.{name} for {one} in {every}])"

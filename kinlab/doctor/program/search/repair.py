@@ -47,6 +47,8 @@ _QUICK = 1300
 """Edits that have been run alone by then, of programs of which lanes are worth the time."""
 _MORE_WORK, _WOVEN = 70_000_000, 5000
 """Work that may be done for them; what putting one in amounts to."""
+_HEAVY, _FIRST, _HEAVY_WORK = 100_000, 150, 200_000_000
+"""Work for one edit above which so many are run alone, and the others at once; work for these."""
 _AT_ONCE = 400
 """How many of them at a time."""
 _RARER = 4
@@ -127,7 +129,7 @@ class LineSearch:
     def __init__(self, program: OwnProgram, case: Case, wanted: Array, allowed: float) -> None:
         self.stand: tuple[ProgramEdit, ...] = ()
         self.tried: list[tuple[ProgramEdit, Array]] = []
-        self.most, self.in_lanes = _WORK, _ALONE + _MORE_WORK
+        self.most = _WORK
         self.trial, self.case = Trial(program), case
         self.asked = Asked(self.trial, case, wanted, allowed)
         states = [
@@ -140,6 +142,8 @@ class LineSearch:
             self.known = [meanings(case.robot, state) for state in states]
         self.observed = Observed(self.trial, self.asked.states)
         self.work = Work(self.asked, self.observed)
+        self.heavy = self.work.of_all(self.work.first) > _HEAVY
+        self.in_lanes = _HEAVY_WORK if self.heavy else _ALONE + _MORE_WORK
         self.evidence = Grounds(self.trial, self.observed, self.known)
         self.arms = other_arms_of(self.asked, self.observed, self.work)
         given, alike = [*case.arguments], case.quantity.name in _TORQUES
@@ -163,7 +167,7 @@ class LineSearch:
         """The search for more, while edits stand in the program."""
         other = copy.copy(self)
         other.stand, other.tried = stand, []
-        other.most, other.in_lanes = self.most // _SHARE, 0
+        other.most, other.in_lanes, other.heavy = self.most // _SHARE, 0, False
         other.work = copy.copy(self.work)
         other.work.done = 0
         other.arms = replace(self.arms, work=other.work)
@@ -198,7 +202,7 @@ class LineSearch:
                 self.work.done += self.work.of(edit)
                 if self.work.done > limit and not (found or self.stand) and turn <= _QUICK:
                     limit = _ALONE + _MORE_WORK  # lanes would take as long
-                if self.work.done > limit:
+                if self.work.done > limit or (self.heavy and turn == _FIRST and not found):
                     found = found or self._in_lanes(tried[turn:][:_FURTHER])
                     break
                 try:
