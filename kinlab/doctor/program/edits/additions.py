@@ -51,6 +51,8 @@ _ENTRY = 1.13
 """Cost of a product of the program for an entry that is zero."""
 _AS_BESIDE = 1.1
 """Cost of the entry beside for a zero."""
+_BEYOND = 1.08
+"""Cost of the angle with the same sine for that with the same cosine: ``pi - t`` for ``-t``."""
 _AS_THERE = 0.99
 """Cost of a sum for one of its terms, where another link has that sum."""
 _BESIDE_A_PART = 1.08
@@ -149,6 +151,10 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
             yield here.instead(ast.Call(scope.root, [node], []), "function", 1.16)
         if isinstance(node, ast.Name) and node.id in scope.arcs and (whole or summand):
             yield from _supplements(here, scope)
+        turned = isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub)
+        if turned and getattr(node.operand, "id", "") in scope.arcs and scope.pi is not None:
+            beyond = ast.BinOp(scope.pi, ast.Sub(), node.operand)
+            yield here.instead(beyond, "missing term", _BEYOND)
         given = isinstance(parent, ast.Call) and called(parent) in scope.functions
         if (entry or given) and isinstance(node, ast.Name | ast.Subscript):
             yield from _quarters(here, scope)

@@ -33,7 +33,7 @@ from kinlab.doctor.program.edits.scope.forms import statement_of, summands
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.calls import of_call
 from kinlab.doctor.program.edits.single.comparisons import negated, of_comparison, of_comparisons
-from kinlab.doctor.program.edits.single.constants import of_constant
+from kinlab.doctor.program.edits.single.constants import of_constant, of_rods
 from kinlab.doctor.program.edits.single.entries import keys_of, of_keys, of_subscript
 from kinlab.doctor.program.edits.single.names import of_attribute, of_name
 from kinlab.doctor.program.edits.single.operators import is_diagonal, of_operator
@@ -263,6 +263,7 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Progra
     elif isinstance(node, ast.List | ast.Tuple):
         yield from of_sequence(here, observed)
         yield from exchanges.of_row(here, scope, observed)
+        yield from of_rods(here)
     elif isinstance(node, ast.IfExp):
         yield here.within(node, "test", negated(node.test), "condition", 1.3)
     elif isinstance(node, ast.Compare):

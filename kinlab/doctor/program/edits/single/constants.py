@@ -5,12 +5,13 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
-from kinlab.doctor.bytecode.syntax import called
+from kinlab.doctor.bytecode.syntax import called, nodes
 from kinlab.doctor.program.edits.numbers.data import is_number, measured
 from kinlab.doctor.program.edits.scope.functions import PI
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.whole import SIZES
 from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, number
+from kinlab.doctor.program.trial import FieldChange
 
 POWER, OF_A_NUMBER = 1.08, 1.25
 """Cost of another power, and of one of a number, which nobody means: ``0.25**2``."""
@@ -18,6 +19,10 @@ OF_RODS = {3: 12, 12: 3}
 """A rod's moments of inertia about its end, and about its middle, are its mass by these."""
 
 
+_RODS = 1.02
+"""Cost of all moments of a row about the other point."""
+_RATIO, _SQUARED = 5, 1.1
+"""A whole number from which on it may be a ratio of gears, and cost of its square for it."""
 _ANGLE_FOR_ONE = 1.05
 """Cost of the angle for a 1 in front of its sine: ``th - sin(th)``."""
 
@@ -31,6 +36,19 @@ def _angle_beside(here: Here) -> ast.expr | None:
     if not isinstance(call, ast.Call) or called(call) != "sin" or len(call.args) != 1:
         return None
     return call.args[0] if isinstance(call.args[0], ast.Name) else None
+
+
+def of_rods(here: Here) -> Iterator[ProgramEdit]:
+    """All moments of a row about the rods' middles for those about their ends, or the other way."""
+    divided = (
+        x for x in nodes(here.node) if isinstance(x, ast.BinOp) and isinstance(x.op, ast.Div)
+    )
+    below = [x.right for x in divided if isinstance(x.right, ast.Constant)]
+    for value, other in OF_RODS.items():
+        alike = [x for x in below if type(x.value) is int and x.value == value]
+        if len(alike) > 1:
+            changes = tuple(FieldChange(x, "value", other) for x in alike)
+            yield ProgramEdit(here.part, changes, "number", _RODS, here.node)
 
 
 def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
@@ -66,6 +84,9 @@ def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
         new = value * factor
         new = int(new) if new == int(new) else new
         yield here.within(here.node, "value", new, "factor", 1.15)
+    if isinstance(getattr(here.parent, "op", None), ast.Mult) and value == int(value) >= _RATIO:
+        squared = ast.BinOp(number(int(value)), ast.Pow(), number(2))
+        yield here.instead(squared, "power", _SQUARED)
     if isinstance(value, int) or value in (0.0, 1.0):
         for new in (value + 1, value - 1):
             power = isinstance(here.parent, ast.BinOp) and isinstance(here.parent.op, ast.Pow)
