@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib.util
+
 import numpy as np
 import pytest
 from hand_programs import asked, written
@@ -43,17 +45,6 @@ def f(q, v, tau):
     G = m*g*l*np.array([2*np.cos(q[0]) + np.cos(q[0] + q[1]), np.cos(q[0] + q[1])])
     return np.linalg.solve(M, tau - n - G)
 """
-SLIDES = """
-import numpy as np
-m1, m2, m3 = 3.0, 1.2, 0.4
-
-def f(q):
-    M = np.zeros((3, 3))
-    M[0, 0] = m1 + m2 + m3
-    M[1, 1] = m2 + m3
-    M[2, 2] = m3
-    return M
-"""
 
 
 def geared() -> kl.Robot:
@@ -65,16 +56,6 @@ def geared() -> kl.Robot:
     return kl.Robot.from_dh(kl.DHTable("geared", "standard", links, gravity=(0, -9.81, 0)))
 
 
-def slides() -> kl.Robot:
-    """Three slides at right angles."""
-    links = [
-        kl.DHLink(joint="prismatic", alpha=np.pi / 2, mass=3.0),
-        kl.DHLink(joint="prismatic", theta=np.pi / 2, alpha=np.pi / 2, mass=1.2),
-        kl.DHLink(joint="prismatic", mass=0.4),
-    ]
-    return kl.Robot.from_dh(kl.DHTable("slides", "standard", links))
-
-
 @pytest.mark.parametrize(
     ("robot", "quantity", "text", "old", "new"),
     [
@@ -82,18 +63,24 @@ def slides() -> kl.Robot:
         ("planar2r", "jacobian", ENTRIES, "[x, 0.4*c]", "[x, 0.0]"),
         ("planar2r", "jacobian", ENTRIES, "[-y, -0.4*s]", "[-y, 0.0]"),
         (geared(), "forward_dynamics", GEARED, " + np.diag(Ia)", ""),
-        (geared(), "forward_dynamics", GEARED, "2e-5*60**2", "2e-5*60"),
-        (slides(), "mass_matrix", SLIDES, "M[1, 1] = m2 + m3", "M[1, 1] = m2"),
     ],
-    ids=["all moments", "an entry", "with its sign", "a row of rotors", "a ratio", "the mass behind"],
+    ids=["all moments", "an entry", "with its sign", "a row of rotors"],
 )  # fmt: skip
 def test_it_is_told(robot, quantity, text, old, new) -> None:
     assert text.count(old) == 1
     assert kl.diagnose(robot, quantity, written(text)).agrees
     found, good = asked(text.replace(old, new), robot, quantity)
     assert good, str(found)
-    if "m3" in old:
-        assert old in found.causes[0].sentence.replace("`", "")
+
+
+def test_the_square_of_a_ratio_is_told_as_it_is_typed(tmp_path) -> None:
+    path = tmp_path / "geared_arm.py"
+    path.write_text(GEARED.replace("2e-5*60**2", "2e-5*60"))
+    spec = importlib.util.spec_from_file_location("geared_arm", path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    found = kl.diagnose(geared(), "forward_dynamics", module.f)
+    assert "2e-05*60**2" in found.causes[0].sentence, str(found)
 
 
 def test_a_call_of_a_heavy_program_is_told() -> None:
