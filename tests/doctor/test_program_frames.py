@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 from hand_programs import with_slips, written
+from test_program_idle import heavy
 
 import kinlab as kl
 
@@ -179,3 +180,58 @@ def test_a_mass_stays_in_front_of_a_product_that_is_turned_over():
     text = SUM.replace("m[k]*J.T @ J", "m[k]*J @ J.T")
     told = kl.diagnose("planar2r_rods", "mass_matrix", written(text))
     assert "m[k]*J.T @ J" in told.causes[0].sentence.split("should be")[1]
+
+
+@pytest.mark.parametrize("wrong", ["[A[k], 0, D[k]]", "[A[k]*c, A[k]*s, D[k]]"])
+def test_the_way_to_a_frame_is_told_in_its_own_axes(wrong):
+    robot, right = kl.load("puma560"), "[A[k], D[k]*sa, D[k]*ca]"
+    text = heavy(robot).partition("\ndef f(")[0]
+    text += "\ndef f(q, v, a):\n    return rne(q, v, a, 9.81) + Jm*a\n"
+    assert text.count(right) == 1 and kl.diagnose(robot, "inverse_dynamics", written(text)).agrees
+    told = kl.diagnose(robot, "inverse_dynamics", written(text.replace(right, wrong)))
+    assert "axes" in told.causes[0].kinds and right in told.causes[0].sentence
+
+
+TENSORS = """
+import numpy as np
+
+def f(q):
+    I = [np.diag([0.02, 0.08, 0.07]), np.diag([0.01, 0.04, 0.045]),
+         np.array([[0.004, 0.001, 0], [0.001, 0.012, 0.0005], [0, 0.0005, 0.014]])]
+    m, l = [3.0, 2.0, 1.2], [0.45, 0.35]
+    c = [np.array([0.2, 0.02, -0.01]), np.array([0.15, -0.01, 0.03]), np.array([0.12, 0.03, 0.01])]
+    R, p, axes, points = np.eye(3), np.zeros(3), [], []
+    M = np.zeros((3, 3))
+    for k in range(3):
+        if k:
+            p = p + R @ np.array([l[k - 1], 0, 0])
+        if k == 2:
+            R = R @ np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
+        cq, sq = np.cos(q[k]), np.sin(q[k])
+        R = R @ np.array([[cq, -sq, 0], [sq, cq, 0], [0, 0, 1]])
+        axes.append(R[:, 2])
+        points.append(p)
+        Jv, Jw = np.zeros((3, 3)), np.zeros((3, 3))
+        for j in range(k + 1):
+            Jv[:, j] = np.cross(axes[j], p + R @ c[k] - points[j])
+            Jw[:, j] = axes[j]
+        M = M + m[k]*Jv.T @ Jv + Jw.T @ R @ I[k] @ R.T @ Jw
+    return M
+"""
+
+
+def test_products_of_inertia_with_the_other_sign_are_told_in_their_matrix():
+    assert kl.diagnose("spatial3r", "mass_matrix", written(TENSORS)).agrees
+    text = TENSORS.replace("0.001", "-0.001").replace("0.0005", "-0.0005")
+    told = kl.diagnose("spatial3r", "mass_matrix", written(text))
+    assert told.causes[0].kinds == ("products' signs",), str(told)
+    assert "[0.001, 0.012, 0.0005]" in told.causes[0].sentence.split("should be")[1]
+
+
+def test_what_each_joint_before_has_too_is_told():
+    text = SUM.replace(
+        "turns = np.array([1.0, k])", "turns = np.zeros(2)\n        turns[:k + 1] = 1"
+    )
+    assert kl.diagnose("planar2r_rods", "mass_matrix", written(text)).agrees
+    told = kl.diagnose("planar2r_rods", "mass_matrix", written(text.replace("[:k + 1]", "[k]")))
+    assert "turns[:k + 1] = 1" in told.causes[0].sentence.split("should be")[1], str(told)

@@ -92,6 +92,7 @@ KINDS: dict[str, str] = {
     N_("name"): N_("a name stands where another belongs"),
     N_("function"): N_("a function stands where another belongs"),
     N_("sum"): N_("a sum forgets what was there before"),
+    N_("axes"): N_("a vector is in the axes of another frame"),
     N_("order of lines"): N_("a line stands too early or too late"),
     N_("extra statement"): N_("a line is one too many"),
     N_("condition"): N_("a condition is off"),

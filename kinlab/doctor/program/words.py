@@ -65,6 +65,7 @@ _WHAT = {
     "parentheses": N_("the parentheses are wrong"),
     "degrees": N_("degrees are taken for radians"),
     "order": N_("the order is exchanged"),
+    "axes": N_("the vector is in the axes of another frame"),
     "order of lines": N_("what the line uses is updated too early, or too late"),
     "loop": N_("the loop leaves one out, or takes one too many"),
     "direction": N_("it runs the other way"),

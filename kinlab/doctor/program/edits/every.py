@@ -26,7 +26,7 @@ from kinlab.doctor.program.edits.forgotten import (
     of_kinds_of_joints,
     with_slices,
 )
-from kinlab.doctor.program.edits.frames import columns_of, of_columns, of_links
+from kinlab.doctor.program.edits.frames import columns_of, of_columns, of_links, of_origins
 from kinlab.doctor.program.edits.guards import choices, masks, of_guards
 from kinlab.doctor.program.edits.numbers.data import of_data
 from kinlab.doctor.program.edits.scope.forms import statement_of, summands
@@ -65,6 +65,8 @@ _NUMBERED = 1.08
 """Cost of another joint's number in a test for one: ``i == 2`` for ``i == 3``."""
 _FILLED = 1.04
 """Cost of another array that is filled, too."""
+_ALL_BEFORE = 1.14
+"""Cost of all entries up to the one that a value is put into."""
 _ROWS = 6
 """Rows of as many joints of which any may share out what is added to one entry."""
 
@@ -264,6 +266,7 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Progra
         yield from of_sequence(here, observed)
         yield from exchanges.of_row(here, scope, observed)
         yield from of_rods(here)
+        yield from of_origins(here, scope)
     elif isinstance(node, ast.IfExp):
         yield here.within(node, "test", negated(node.test), "condition", 1.3)
     elif isinstance(node, ast.Compare):
@@ -459,3 +462,6 @@ def _target(here: Here, target: ast.Subscript, observed: Observed) -> Iterator[P
         elif not isinstance(key, ast.Slice):
             for step in (1, -1):
                 yield here.within(holder, field, plus(key, step), "index", 1.15)
+            if isinstance(key, ast.Name):  # the entries of all joints before it, too
+                before = ast.Slice(None, plus(key, 1), None)
+                yield here.within(holder, field, before, "index", _ALL_BEFORE)

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.bytecode.syntax import called, factors, nodes
 from kinlab.doctor.program.edits import chains
 from kinlab.doctor.program.edits.scope.forms import entry, named, statement_of
 from kinlab.doctor.program.edits.scope.part import Scope
@@ -25,6 +25,8 @@ _MODIFIED = (("turn", 0), ("shift", 0), ("turn", 2), ("shift", 2))
 """Their orders."""
 _OTHER_TABLE, _IN_TURN = 1.03, 1.1
 """Cost of the order of the other convention, and of another one."""
+_TURNED_BACK, _ALIKE = 1.07, 0.01
+"""Cost of the way to a frame in its own axes; what the other convention's costs more."""
 _ACROSS = 1.06
 """Cost of a row for a column, or of a column for a row."""
 _LEAST = 3
@@ -121,6 +123,58 @@ def _turns(values: Sequence[Array], axis: int) -> bool:
 
 def _is_something(matrix: Array) -> bool:
     return bool(np.max(np.abs(matrix)) > TOLERANCES.same_relation)
+
+
+# -------- Where a frame is
+
+
+def of_origins(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """The way to a link's frame in that frame's axes: ``[a, d*sa, d*ca]`` for ``[a, 0, d]``.
+
+    Args:
+        here: what is written as a row.
+        scope: the sines and cosines that may be the twist's.
+    """
+    row = here.node.elts
+    found = _along_and_up(row) if len(row) == _AXES else None
+    for sine, cosine in _sines_and_cosines(scope) if found is not None else ():
+        across, up = found
+        for sign, cost in ((False, _TURNED_BACK), (True, _TURNED_BACK + _ALIKE)):
+            aside = chains.opposite(up) if sign else up
+            new = [across, ast.BinOp(aside, ast.Mult(), sine), ast.BinOp(up, ast.Mult(), cosine)]
+            yield here.within(here.node, "elts", new, "axes", cost)
+
+
+def _along_and_up(row: Sequence[ast.expr]) -> tuple[ast.expr, ast.expr] | None:
+    """What is along x, and along z: ``a`` and ``d`` of ``[a, 0, d]`` and ``[a*c, a*s, d]``."""
+    if isinstance(row[2], ast.Constant | ast.BinOp):
+        return None
+    if isinstance(row[1], ast.Constant) and row[1].value == 0:
+        return (row[0], row[2]) if not isinstance(row[0], ast.Constant) else None
+    one, other = factors(row[0]), factors(row[1])
+    texts = [ast.unparse(x) for x in other]
+    both = [x for x in one if ast.unparse(x) in texts]
+    return (both[0], row[2]) if len(both) == 1 and len(one) == len(other) == 2 else None
+
+
+def _sines_and_cosines(scope: Scope) -> Iterator[tuple[ast.expr, ast.expr]]:
+    """The sines and cosines of one angle: names of them first."""
+    simple = dict(scope.simple(()))
+    named_ = {x.id: x for x in simple.values() if isinstance(x, ast.Name)}
+    for name, sine in named_.items():
+        for other in {name.replace("s", "c", 1), name.replace("sin", "cos", 1)} - {name}:
+            if other in named_:
+                yield sine, named_[other]
+    calls = [x for x in scope.pieces_here(()).values() if isinstance(x, ast.Call)]
+    for sine in [x for x in calls if called(x) == "sin"]:
+        for cosine in [x for x in calls if called(x) == "cos"]:
+            if ast.dump(sine.args[0]) == ast.dump(cosine.args[0]):
+                yield sine, cosine
+    known = {ast.unparse(x.args[0]) for x in calls if called(x) == "sin"}
+    for text in [x for x in simple if x.startswith("al") and x not in known]:
+        if scope.has_numpy:
+            sine, cosine = (ast.parse(f"np.{x}({text})", mode="eval").body for x in ("sin", "cos"))
+            yield sine, cosine
 
 
 # -------- Columns that have names

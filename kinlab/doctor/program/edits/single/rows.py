@@ -28,6 +28,8 @@ _ONES = 1.14
 """Cost of ones for a row with zeros."""
 _LIKE_ANOTHER = 1.06
 """Cost of an entry that is made as another one of its row is."""
+_PRODUCTS = 1.08
+"""Cost of the other sign of all products of inertia."""
 _HALVED = 1.04
 """Cost of the halves of a twist, or of a wrench, for one another."""
 
@@ -42,6 +44,7 @@ def of_sequence(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
     yield from _across(here, elements)
     yield from _between(here, elements)
     yield from _signs_of_two(here, elements)
+    yield from _products_of_inertia(here, elements)
     yield from _laid_out(here, elements)
     yield from _like_another(here, elements)
     turned = [_opposite(one) for one in elements]
@@ -187,6 +190,21 @@ def _signs_of_two(here: Here, rows: Sequence[ast.expr]) -> Iterator[ProgramEdit]
                 for i, row in enumerate(entries)
             ]  # fmt: skip
             yield here.within(here.node, "elts", turned, "sign", 1.15)
+
+
+def _products_of_inertia(here: Here, rows: Sequence[ast.expr]) -> Iterator[ProgramEdit]:
+    """A tensor with the other sign of its products of inertia, as other books define them."""
+    entries = [one.elts for one in rows if isinstance(one, ast.List | ast.Tuple)]
+    if len(entries) != len(rows) or {len(rows), *map(len, entries)} != {_THREE}:
+        return
+    texts = [[ast.unparse(x) for x in row] for row in entries]
+    if texts != [[*column] for column in zip(*texts, strict=True)]:
+        return
+    turned = [
+        ast.List([x if i == k else _opposite(x) for k, x in enumerate(row)], ast.Load())
+        for i, row in enumerate(entries)
+    ]
+    yield here.within(here.node, "elts", turned, "products' signs", _PRODUCTS)
 
 
 def _across(here: Here, rows: Sequence[ast.expr]) -> Iterator[ProgramEdit]:
