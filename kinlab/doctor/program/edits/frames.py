@@ -31,8 +31,8 @@ _ACROSS = 1.06
 """Cost of a row for a column, or of a column for a row."""
 _LEAST = 3
 """Factors beside the one that stays of which there may be another order."""
-_AXES = 3
-"""Columns of a rotation."""
+_AXES, _PAIR = 3, 2
+"""Columns of a rotation; factors of a length along an axis."""
 
 # -------- The factors of a link's transform
 
@@ -137,8 +137,10 @@ def of_origins(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """
     row = here.node.elts
     found = _along_and_up(row) if len(row) == _AXES else None
-    for sine, cosine in _sines_and_cosines(scope) if found is not None else ():
-        across, up = found
+    if found is None:
+        return
+    across, up = found
+    for sine, cosine in _sines_and_cosines(scope):
         for sign, cost in ((False, _TURNED_BACK), (True, _TURNED_BACK + _ALIKE)):
             aside = chains.opposite(up) if sign else up
             new = [across, ast.BinOp(aside, ast.Mult(), sine), ast.BinOp(up, ast.Mult(), cosine)]
@@ -154,7 +156,7 @@ def _along_and_up(row: Sequence[ast.expr]) -> tuple[ast.expr, ast.expr] | None:
     one, other = factors(row[0]), factors(row[1])
     texts = [ast.unparse(x) for x in other]
     both = [x for x in one if ast.unparse(x) in texts]
-    return (both[0], row[2]) if len(both) == 1 and len(one) == len(other) == 2 else None
+    return (both[0], row[2]) if len(both) == 1 and len(one) == len(other) == _PAIR else None
 
 
 def _sines_and_cosines(scope: Scope) -> Iterator[tuple[ast.expr, ast.expr]]:
@@ -166,15 +168,16 @@ def _sines_and_cosines(scope: Scope) -> Iterator[tuple[ast.expr, ast.expr]]:
             if other in named_:
                 yield sine, named_[other]
     calls = [x for x in scope.pieces_here(()).values() if isinstance(x, ast.Call)]
-    for sine in [x for x in calls if called(x) == "sin"]:
-        for cosine in [x for x in calls if called(x) == "cos"]:
-            if ast.dump(sine.args[0]) == ast.dump(cosine.args[0]):
-                yield sine, cosine
-    known = {ast.unparse(x.args[0]) for x in calls if called(x) == "sin"}
+    sines = [x for x in calls if called(x) == "sin"]
+    for one in sines:
+        for other_ in [x for x in calls if called(x) == "cos"]:
+            if ast.dump(one.args[0]) == ast.dump(other_.args[0]):
+                yield one, other_
+    known = {ast.unparse(x.args[0]) for x in sines}
     for text in [x for x in simple if x.startswith("al") and x not in known]:
         if scope.has_numpy:
-            sine, cosine = (ast.parse(f"np.{x}({text})", mode="eval").body for x in ("sin", "cos"))
-            yield sine, cosine
+            of = [ast.parse(f"np.{name}({text})", mode="eval").body for name in ("sin", "cos")]
+            yield of[0], of[1]
 
 
 # -------- Columns that have names
