@@ -122,8 +122,9 @@ def _less_a_diagonal(here: Here, scope: Scope, size: int) -> Iterator[ProgramEdi
 
 
 def _idle_diagonals(scope: Scope, size: int) -> list[str]:
-    names = scope.shapes.items() if scope.has_numpy else ()
-    return [f"np.diag({x})" for x, shape in names if x in scope.unused and shape == (size,)]
+    """Rows that nothing uses, each as a diagonal."""
+    every = scope.shapes.items() if scope.has_numpy else ()
+    return [f"np.diag({x})" for x, shape in every if x in scope.unused and shape == (size,)]
 
 
 def _with_a_diagonal(here: Here, scope: Scope, size: int) -> Iterator[ProgramEdit]:
