@@ -142,22 +142,26 @@ def _examined(
     close = same and not ranked and not written and near
     if close:
         right_parts += verdicts.by_how_much(case, engine, off)
-    k = first_largest(errors)
-    where, furthest = _worst(values, engine, k, case) if same else ("shape", ())
-    return Diagnosis(
-        quantity,
-        label,
-        name,
-        False,
-        worst,
-        tuple(ranked),
-        partial if not ranked else (),
-        where,
-        {n: stack[k] for n, stack in case.arguments.items()},
-        values[(k, *furthest)],
-        engine[(k, *furthest)],
-        "near" if close else "",
+    return replace(
+        _wrong(Diagnosis(quantity, label, name, False, worst), case, values, engine, errors),
+        causes=tuple(ranked),
+        partial=partial if not ranked else (),
+        form="near" if close else "",
         proved=right_parts,
+    )
+
+
+def _wrong(found: Diagnosis, case: Case, values: Array, engine: Array, errors: Array) -> Diagnosis:
+    """A diagnosis with its worst entry, and the state at which that is."""
+    k = first_largest(errors)
+    same = values.shape == engine.shape
+    where, furthest = _worst(values, engine, k, case) if same else ("shape", ())
+    return replace(
+        found,
+        worst_entry=where,
+        worst_state={n: stack[k] for n, stack in case.arguments.items()},
+        hand=values[(k, *furthest)],
+        engine=engine[(k, *furthest)],
     )
 
 
@@ -177,17 +181,10 @@ def _by_numbers_alone(
     if other is None:
         return replace(wrong, proved=tuple(remarks))
     there, right, texts = other
-    errors = relative_errors(there.hand, right)
-    k = first_largest(errors)
-    where, furthest = _worst(there.hand, right, k, there)
     return replace(
-        wrong,
+        _wrong(wrong, there, there.hand, right, relative_errors(there.hand, right)),
         causes=tuple(_ranked(_told(there, right, texts)[0])),
         proved=(_("it agrees with this robot's numbers, not with others"), *remarks),
-        worst_entry=where,
-        worst_state={n: stack[k] for n, stack in there.arguments.items()},
-        hand=there.hand[(k, *furthest)],
-        engine=right[(k, *furthest)],
     )
 
 
