@@ -11,6 +11,7 @@ import numpy as np
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.glossary.meaning import meaning_of, said
 from kinlab.doctor.glossary.textbook import Glossary, Sense
+from kinlab.doctor.program.edits.numbers.data import shown
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit
 from kinlab.doctor.program.search.repair import LineSearch
@@ -34,7 +35,7 @@ def named(edit: ProgramEdit, search: LineSearch) -> list[tuple[str, str]]:
             return []
         right = np.array(edit.numbers[1])
         sense = meaning_of(known, [right for _state in known])
-        return [] if sense is None else [(f"{edit.numbers[1]:.6g}", said(sense))]
+        return [] if sense is None else [(shown(edit.numbers[1]), said(sense))]
     changed = [edit.node, *(c.new for c in edit.changes if isinstance(c.new, ast.AST))]
     texts = {ast.unparse(n): n for n in nodes(search.trial.trees[edit.part]) if _piece(n)}
     out: dict[str, str] = {}

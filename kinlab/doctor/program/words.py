@@ -21,6 +21,7 @@ from kinlab.doctor.program.cuts import cuts
 from kinlab.doctor.program.digits import of_rounded_numbers
 from kinlab.doctor.program.edits.chains import SUMS, chain, joined
 from kinlab.doctor.program.edits.numbers.as_the_arm import of_table
+from kinlab.doctor.program.edits.numbers.data import shown
 from kinlab.doctor.program.grounds.scaled import is_own
 from kinlab.doctor.program.named import named
 from kinlab.doctor.program.nearly import of_small_numbers
@@ -450,8 +451,8 @@ def _of_data(edit: ProgramEdit, trial: Trial) -> str:
     if edit.numbers is None:
         return _("{name}, {what}").format(**said)
     old, new = edit.numbers
-    told = _("{name}, {what}: {old:.6g} should be {new:.6g}")
-    return told.format(**said, old=old, new=new)
+    told = _("{name}, {what}: {old} should be {new}")
+    return told.format(**said, old=shown(old), new=shown(new))
 
 
 def _pieces(edit: ProgramEdit, trial: Trial) -> tuple[str, str]:

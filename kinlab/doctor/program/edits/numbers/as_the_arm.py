@@ -14,7 +14,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import called, nodes
 from kinlab.doctor.changes import table_of
-from kinlab.doctor.program.edits.numbers.data import NumberPlace, leaves, together
+from kinlab.doctor.program.edits.numbers.data import NumberPlace, leaves, shown, together
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit, number, places
 from kinlab.doctor.program.trial import FieldChange, Trial
@@ -30,6 +30,8 @@ _TOLD, _MOVING = 3, 2
 """Numbers of a column that tell which of the table's it is; how many may be no numbers."""
 _TOGETHER = 0.01
 """What several numbers of a row cost more than one, which may do alone."""
+_PLAIN = ("a", "alpha", "d", "theta", "mass", "armature")
+"""What the arm's table has one number of for each link."""
 _END, _DECIMALS = 1.0, 15
 """Cost of the arm's base or tool for the identity; decimals that its numbers have."""
 _DECIMALS_OF_DEGREES = 9
@@ -118,8 +120,8 @@ def _matrix(value: Array) -> str:
     """A matrix as it is shown."""
     diagonal = np.diagonal(value)
     if np.array_equal(value, np.diag(diagonal)):
-        return f"diag({', '.join(f'{x:.6g}' for x in diagonal)})"
-    return f"[{', '.join('[' + ', '.join(f'{x:.6g}' for x in row) + ']' for row in value)}]"
+        return f"diag({', '.join(map(shown, diagonal))})"
+    return f"[{', '.join('[' + ', '.join(map(shown, row)) + ']' for row in value)}]"
 
 
 def as_it_is(trial: Trial, observed: Observed, robot: Any) -> Callable[[ProgramEdit], bool]:
@@ -209,7 +211,7 @@ def _row(k: int, some: Sequence[tuple[_Cell, float]], whole: Sequence[_Cell]) ->
         return ProgramEdit(first.part, tuple(changes), kind, _COST, first.node)
     both = [(cell.place, right) for cell, right in some if cell.place is not None]
     changes = [change for edit in together(both) for change in edit.changes]
-    told = (", ".join(f"{x:.6g}" for x in old), ", ".join(f"{x:.6g}" for x in new))
+    told = (", ".join(map(shown, old)), ", ".join(map(shown, new)))
     node, several = first.place.node, tuple(changes)
     return ProgramEdit(DATA, several, kind, _COST, node, (k,), exchanged=told, of_the_arm=True)
 
@@ -359,12 +361,12 @@ def _wrong(values: Sequence[float], columns: Sequence[Array]) -> Iterator[tuple[
 
 
 def _columns(table: DHTable, typed: Sequence[float]) -> list[Array]:
-    """The columns of a table: its lengths, angles, masses, centres and moments of inertia.
+    """The columns of a table: its lengths, angles, masses, centres, moments of inertia, rotors.
 
     Its angles in degrees, too, where one of those that are typed is no angle otherwise.
     """
     links = table.links
-    plain = [[getattr(k, name) for k in links] for name in ("a", "alpha", "d", "theta", "mass")]
+    plain = [[getattr(k, name) for k in links] for name in _PLAIN]
     if max(map(abs, typed), default=0.0) > 2 * np.pi:
         degrees = np.round(np.degrees(plain[1:4:2]), _DECIMALS_OF_DEGREES)
         plain += degrees.tolist()

@@ -28,6 +28,8 @@ _AXIS = 1.06
 """Cost of another direction for an axis: no row of lengths has but one of them."""
 _PAIR = 2
 """Numbers that are reversed where they are exchanged."""
+_DIGITS = 10
+"""Significant digits that somebody types at most."""
 _NAMES = 12
 """Names of numbers of which any two may have been exchanged."""
 
@@ -117,8 +119,8 @@ def _names_exchanged(trial: Trial) -> Iterator[ProgramEdit]:
         first, last = trial.space[one], trial.space[other]
         if first != last:
             changes = (FieldChange(trial.space, one, last), FieldChange(trial.space, other, first))
-            told = (f"{one} = {first:.6g}, {other} = {last:.6g}",
-                    f"{one} = {last:.6g}, {other} = {first:.6g}")  # fmt: skip
+            told = (f"{one} = {shown(first)}, {other} = {shown(last)}",
+                    f"{one} = {shown(last)}, {other} = {shown(first)}")  # fmt: skip
             yield ProgramEdit(DATA, changes, "entries swapped", 1.12, one, exchanged=told)
 
 
@@ -265,7 +267,13 @@ def _swapped(row: Any, i: int, j: int) -> Any:
 
 
 def _row(row: Any) -> str:
-    return ", ".join(f"{x:.6g}" if _is_plain(x) else "..." for x in row)
+    return ", ".join(shown(x) if _is_plain(x) else "..." for x in row)
+
+
+def shown(value: float) -> str:
+    """A number with all the digits with which somebody typed it; of others the first ones."""
+    typed = f"{value:.{_DIGITS}g}"
+    return typed if float(typed) == value else f"{value:.6g}"
 
 
 def _is_plain(value: Any) -> bool:
