@@ -114,17 +114,21 @@ def _examined(
         return replace(right, remarks=() if hidden else (*rounded, *remarks), form=form)
     case, excuse = excused(case, engine, written) if same else (case, None)
     near = excuse is not None and excuse.form == "near"
+    sure: list[Cause] = []
     if near and not written:
         first = next(case.looked_through(engine, TOLERANCES.formula_agrees), None)
         if first is not None and first.excuse is not None:
             excuse, near = first.excuse, False
+        elif first is not None:  # one line with which it is right leaves nothing to the digits
+            sure = [x for x in first.causes if x.error_after <= TOLERANCES.formula_agrees][:1]
+            excuse, near = (None, False) if sure else (excuse, near)
     if same and excuse is None:
         values, errors = case.hand, relative_errors(case.hand, engine)
         worst = float(np.max(errors))
-    causes: list[Cause] = []
+    causes = sure
     partial: tuple[str, ...] = ()
     split: Apart | None = None
-    if excuse is None:
+    if excuse is None and not sure:
         causes, partial, excuse, split = _explained(case, engine, written, worst)
     if excuse is not None and not near:
         right = Diagnosis(quantity, label, name, True, worst)

@@ -123,7 +123,8 @@ def of_rounded_numbers(search: LineSearch) -> Excuse | None:
         known = _of_the_robot(search)
     if known is not None:
         return known
-    every = [*_literals(search)]
+    own_values = np.abs(own_numbers(case.robot))
+    every = [pair for pair in _literals(search) if not _is_exact(pair[1], own_values)]
     size = int(np.prod(wanted.shape[1:], initial=1))
     which = range(min(len(wanted), -(-_OVER * len(every) // size) + 2))
     run = max(search.work.amounts.values()) * len(which) // len(search.asked.watched)
@@ -236,6 +237,13 @@ def _written(search: LineSearch) -> Iterator[tuple[NumberPlace, Literal]]:
         if math.isfinite(value):
             text = repr(float(value)) if isinstance(place.value, float) else str(int(value))
             yield place, beneath(literal(text), above.get(id(place.node), ""))
+
+
+def _is_exact(one: Literal, own: Array) -> bool:
+    """Whether a number is the robot's, and too long to be so by accident: it stands for no other."""
+    return one.digits >= _FEWEST and bool(
+        np.isclose(own, one.value, rtol=TOLERANCES.same_number, atol=0.0).any()
+    )
 
 
 def _literals(search: LineSearch) -> Iterator[tuple[NumberPlace, Literal]]:

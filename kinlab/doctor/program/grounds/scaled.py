@@ -317,7 +317,9 @@ def own_numbers(robot: Any) -> Array:
     """The arm's, or the five-bar's, own numbers, with their signs."""
     if isinstance(robot, FiveBar):
         plain = plain_numbers(robot)
-        both = (plain.l1, plain.l2, plain.arm, plain.crank, plain.crank_com)
+        both = [plain.l1, plain.l2, plain.arm, plain.crank, plain.crank_com, plain.crank_inertia]
+        both += [plain.rod, plain.rod_com, plain.rod_inertia, plain.rotor]
+        both += [robot.rotor_inertia, robot.gear_ratio]
         return np.unique(np.concatenate([*map(np.ravel, both), [plain.e, plain.payload, plain.g]]))
     table = table_of(robot)
     if table is None:

@@ -155,9 +155,14 @@ class OtherArms:
             return None
 
 
+def moves(edit: ProgramEdit) -> bool:
+    """Whether an edit puts what stands in rows into other places."""
+    return edit.kind in _MOVING
+
+
 def _moves_numbers(edit: ProgramEdit) -> bool:
     """Whether an edit puts typed numbers into other places of a row, or of a table."""
-    if edit.kind not in _MOVING:
+    if not moves(edit):
         return False
     put = [x for c in edit.changes for x in (c.new if isinstance(c.new, list) else [c.new])]
     inner = (node for one in put if isinstance(one, ast.AST) for node in nodes(one))

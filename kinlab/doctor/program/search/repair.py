@@ -26,7 +26,7 @@ from kinlab.doctor.program.lanes.run import InLanes
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit, changed, row_of
 from kinlab.doctor.program.read import OwnProgram
-from kinlab.doctor.program.search.arms import other_arms_of
+from kinlab.doctor.program.search.arms import moves, other_arms_of
 from kinlab.doctor.program.search.asked import Asked
 from kinlab.doctor.program.search.chosen import chosen
 from kinlab.doctor.program.search.company import in_company
@@ -89,7 +89,7 @@ _SUSPECTED = 2
 """Of so much work one part goes first to statements that are wrong though their parts are right."""
 _NUMBER = 1.15
 """Cost of an edit above which it is rather a wrong number that explains the program."""
-_SOLVED = 1_200_000
+_SOLVED = 20_000_000
 """Work beyond that for single edits in which wrong numbers are solved for."""
 _STANDING = 2
 """Edits beside which some number would do too easily."""
@@ -226,7 +226,7 @@ class LineSearch:
                 return found
             if len(self.stand) < _STANDING and (not found or best > _NUMBER):
                 found = self._numbers() + found
-            elif not self.stand and found[0].edits[-1].part != DATA:
+            elif not self.stand and (found[0].edits[-1].part != DATA or moves(found[0].edits[-1])):
                 found = self._numbers(strange=True) + found
         return found
 
@@ -353,7 +353,7 @@ class LineSearch:
         """
         found: list[tuple[float, int, ProgramRepair]] = []
         solver = Solver(self.asked, self.observed, self.evidence, self.work)
-        most = (self.most if self.stand else _ALONE) + _SOLVED
+        most = (self.most if self.stand else max(_ALONE, self.work.done)) + _SOLVED
         for value, edit in solver.edits(most, strange):
             with changed(self.trial, (edit,)):
                 repair = self.verdict((*self.stand, edit))

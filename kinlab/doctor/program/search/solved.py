@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -23,6 +24,8 @@ _ANGLES = 12
 """Into how many parts of pi a number may fall."""
 _MULTIPLES = (0.5, 2.0, 0.1, 10.0)
 """Times a number that somebody types for it."""
+_NEAREST = 8
+"""Numbers of the robot's that are tried for one of which nothing can be solved."""
 _STRANGE = 4
 """Numbers of the data that are none of the robot's of which each is solved for."""
 _TURNS = 8
@@ -90,11 +93,18 @@ class Solver:
         tries = [] if found is None else [float(f"{found:.{k}e}") for k in range(most - 1)]
         if found is not None and 1 / _ANGLES < abs(found) < 2 * np.pi:
             tries.insert(0, round(found * _ANGLES / np.pi) * np.pi / _ANGLES)
-        for value in tries or [k * old for k in _MULTIPLES]:
+        for value in tries or [*(k * old for k in _MULTIPLES), *self._own_beside(old)]:
             values = self._with(place, value)
             if value != old and values is not None and self.asked.right(values).all():
                 return value
         return None
+
+    def _own_beside(self, old: float) -> list[float]:
+        """Numbers of the robot's with the digits of another one, and those near it."""
+        own = own_numbers(self.asked.case.robot)
+        same = [float(x) for x in own[own * old > 0] if x != old]
+        same.sort(key=lambda x: (_digits(x) != _digits(old), abs(math.log(x / old))))
+        return same[:_NEAREST]
 
     def _by_secants(self, place: NumberPlace) -> float | None:
         """The number with which the first states come nearest, where that is found."""
@@ -127,6 +137,11 @@ class Solver:
         self.work.done += self.work.of(edit)
         with changed(self.asked.trial, (edit,)):
             return self.asked.values(self.asked.first)
+
+
+def _digits(value: float) -> list[str]:
+    """The digits of a number, in no order, without zeros."""
+    return sorted(f"{value:g}".replace(".", "").replace("0", ""))
 
 
 def makes_up(robot: Any, old: float, new: float) -> bool:
