@@ -120,7 +120,7 @@ def _examined(
         if first is not None and first.excuse is not None:
             excuse, near = first.excuse, False
         elif first is not None:  # one line with which it is right leaves nothing to the digits
-            sure = [x for x in first.causes if x.error_after <= TOLERANCES.formula_agrees][:1]
+            sure = [*first.sure[:1]]
             excuse, near = (None, False) if sure else (excuse, near)
     if same and excuse is None:
         values, errors = case.hand, relative_errors(case.hand, engine)

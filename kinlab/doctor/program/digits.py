@@ -240,7 +240,7 @@ def _written(search: LineSearch) -> Iterator[tuple[NumberPlace, Literal]]:
 
 
 def _is_exact(one: Literal, own: Array) -> bool:
-    """Whether a number is the robot's, and too long to be so by accident: it stands for no other."""
+    """Whether a number is the robot's, with so many digits that it stands for no other."""
     return one.digits >= _FEWEST and bool(
         np.isclose(own, one.value, rtol=TOLERANCES.same_number, atol=0.0).any()
     )

@@ -124,6 +124,7 @@ class WrongLines:
         excuse: of a program that is right all the same, why; nothing else is said then.
         stepping: whether the program may take differences.
         odd: whether a number of the program is none that the arm's table has in its place.
+        sure: the causes that leave nothing, and are no end of a loop, nor a number next to nothing.
         hidden: of several lines those of which all but one do nothing as long as that one is wrong,
             with the kind of that one's slip.
     """
@@ -134,6 +135,7 @@ class WrongLines:
     excuse: Excuse | None = None
     odd: bool = False
     stepping: bool = False
+    sure: tuple[Cause, ...] = ()
     hidden: tuple[tuple[Cause, str], ...] = ()
 
 
@@ -173,10 +175,24 @@ def lines(
         causes = [cause_of(one, search) for one in told]
         pairs = zip(causes, told, strict=True)
         hidden = ((cause, kind) for cause, one in pairs if (kind := _hiding(one, search)))
+        sure = [x for x, one in zip(causes, told, strict=True) if _is_sure(one)]
         stepping = search.asked.differences
         yield WrongLines(
-            causes, search.written_out, numbers, None, odd, stepping, hidden=(*hidden,)
+            causes, search.written_out, numbers, None, odd, stepping, (*sure,), (*hidden,)
         )
+
+
+def _is_sure(repair: ProgramRepair) -> bool:
+    """Whether one edit leaves nothing of a small error that could be one of digits.
+
+    How often an iteration is gone through, and what damps it, are such as leave little.
+    """
+    if len(repair.edits) > 1 or repair.error > TOLERANCES.formula_agrees:
+        return False
+    (edit,) = repair.edits
+    if edit.kind in _ENDING:
+        return False
+    return edit.of_the_arm or edit.numbers is None or abs(edit.numbers[1]) > TOLERANCES.is_small
 
 
 def _hiding(repair: ProgramRepair, search: LineSearch) -> str:
@@ -258,6 +274,8 @@ def _same_slip(reading: Cause, edit: str) -> bool:
 
 
 _LEFT_OUT = ("missing term", "missing statement", "sum")
+_ENDING = ("loop", "condition")
+"""Kinds of edits of how long an iteration goes on."""
 _NUMBERS = (
     "number",
     "sign",
