@@ -16,12 +16,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hand_programs import PROGRAMS, lines_named, names_a_line, repaired, slipped
+from hand_programs import PROGRAMS, lines_named, names_a_line, repaired, slipped, written
 
 import kinlab as kl
 from kinlab.doctor.examine import prepare
 from kinlab.doctor.program.read import read
-from kinlab.doctor.program.trial import FieldChange, Trial
+from kinlab.doctor.program.trial import FieldChange, NoProgramError, Trial
 from kinlab.doctor.program.words import _WHAT
 from kinlab.host.language import _, speaking
 
@@ -511,3 +511,12 @@ def f(x): return b(x) + c(x)
         with other("c", 10.0, 20.0), other("b", 1.0, 0.0):
             assert trial.function(3.0) == 15.0 + 0.0 + 60.0
     assert trial.function(3.0) == 6.0 + 1.0 + 30.0
+
+
+def test_an_edit_that_would_hold_itself_is_no_program() -> None:
+    trial = Trial(read(written("def g(x):\n    return x\n\ndef f(q):\n    return g(q[0])")))
+    part = next(k for k, tree in enumerate(trial.trees) if tree.name == "f")
+    call = next(node for node in ast.walk(trial.trees[part]) if isinstance(node, ast.Call))
+    change = FieldChange(call.args, 0, call)
+    with pytest.raises(NoProgramError), trial.changed({part}, [change]):
+        raise AssertionError("it was compiled")

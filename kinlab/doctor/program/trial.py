@@ -233,7 +233,7 @@ class Trial:
         try:
             with with_products(module):
                 code = compile(module, "<formula>", "exec")
-        except (SyntaxError, ValueError, TypeError) as problem:
+        except (SyntaxError, ValueError, TypeError, RecursionError) as problem:
             raise NoProgramError(str(problem)) from problem
         if part.sets:
             return FunctionType(code, space)
