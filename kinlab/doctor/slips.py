@@ -280,7 +280,10 @@ def _still_off(
     case: Case, off: list[AnswerEntry], written: dict[str, Written]
 ) -> list[AnswerEntry]:
     """The entries that are off all the same."""
-    here = numbers_at(case)
+    here, table = numbers_at(case), table_of(case.robot)
+    size = len(next(iter(case.arguments.values())))
+    for name in vocabulary(table).others if table is not None else ():
+        here.setdefault(name, np.full(size, _number_of(case, name)))  # lc1 of a rod
     now = [(one, written[one.label].values(here)) for one in off]
     left = [replace(one, hand=hand) for one, hand in now]
     return [one for one in left if not one.agrees]

@@ -171,3 +171,16 @@ def test_a_centre_by_a_letter_of_ones_own_is_told_by_it() -> None:
 )  # fmt: skip
 def test_a_name_of_the_arm_s_that_is_set_wrongly_is_told_where_it_is_set(robot, entry, text, said):
     assert kl.diagnose(robot, entry, text).sentence.startswith(said)
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "text", "said"),
+    [
+        ("spatial3r", "J13", "c3 = cos(q3); s3 = sin(q3); J13 = -xt*c3*cos(q1+q2)", "J13: c3 should be sin(q3)"),
+        ("planar2r", "x", "c1 = cos(q1); s12 = sin(q1+q2); x = l1*c1 + l2*s12", "x: s12 should be"),
+        ("planar2r", "x", "c1 = sin(q1); x = l1*c1 + l2*cos(q1+q2)", "c1: sin(q1) should be cos(q1)"),
+        ("single_link", "T", "I_O = I1 + m1*l1^2; T = 1/2*I_O*qd1^2", "I_O: l1 should be lc1"),
+    ],
+)  # fmt: skip
+def test_a_name_that_is_defined_as_it_is_called_is_not_at_fault(robot, entry, text, said) -> None:
+    assert said in kl.diagnose(robot, entry, text).causes[0].sentence

@@ -292,6 +292,19 @@ def test_half_a_length_is_another_length(words):
     right("planar2r_rods", "V", f"{RODS_V}，其中杆为均质杆")
 
 
+@pytest.mark.parametrize("score", ["(3 points)", "[2 Punkte]", "（5分）"])
+def test_what_an_answer_gives_is_no_part_of_it(score):
+    assert right("planar2r", "g2", f"g2 = {G2} {score}").remarks == ()
+    assert kl.diagnose("planar2r", "g2", f"g2 = {G2.replace('c12', 's12')} {score}").known
+
+
+def test_moments_about_another_point_are_said():
+    (said,) = right(
+        "planar2r_rods", "V", f"{RODS_V}; I1 and I2 are taken about the joints."
+    ).remarks
+    assert "about the joints" in said
+
+
 def test_the_words_that_were_not_read_are_said_and_cost_one_entry_alone():
     from kinlab.doctor.report import of_document
 

@@ -19,6 +19,9 @@ from kinlab.doctor.text.alternatives import study, study_definition
 from kinlab.doctor.text.line import Change, Line, words_in
 from kinlab.doctor.text.mend import Mended, rewritten, right_with_two
 from kinlab.doctor.text.written import Written
+from kinlab.errors import KinlabError
+from kinlab.formulas import tree
+from kinlab.formulas.text import canonical
 from kinlab.tolerances import TOLERANCES
 
 _MOST = 300
@@ -123,8 +126,20 @@ class Definitions:
 
     @cached_property
     def parts(self) -> list[_Part]:
-        """What may be changed in the definitions."""
-        return [_part(self.line, name) for name in self.names]
+        """What may be changed in the definitions; ``c3 = cos(q3)`` is as it is called."""
+        return [_part(self.line, name) for name in self.names if not self._is_as_called(name)]
+
+    def _is_as_called(self, name: str) -> bool:
+        """Whether a name is defined as what everybody calls so."""
+        meant = canonical(name)
+        if meant.op == "sym":
+            return False
+        try:
+            own = self.told.definition(name).values(self.here)
+            there = tree.evaluate(meant, dict(self.here))
+        except (KinlabError, KeyError):
+            return False
+        return bool(np.max(np.abs(own - there)) <= TOLERANCES.formula_agrees)
 
     @cached_property
     def formula(self) -> _Part:

@@ -19,6 +19,11 @@ _AROUND = re.compile(r"\\(?:begin|end|label|tag|ref|color|textcolor|operatorname
 _COMMAND = re.compile(r"\\(?:[A-Za-z]+\*?|.)")
 MATHS = re.compile(r"\$\$[^$]*\$\$|\$[^$]*\$|\\\(.*?\\\)|\\\[.*?\\\]", re.DOTALL)
 """Formulas in LaTeX between signs that say so."""
+SCORE = re.compile(
+    r"[(\[（【]\s*\d+(?:[.,/]\d+)?\s*(?:points?|pts?\.?|marks?|Punkte?|Pkt\.?|分)\s*[)\]）】]",
+    re.IGNORECASE,
+)
+"""What an answer gives: ``(3 points)``."""
 _WHERE = re.compile(
     r"\b(?:where|in which|(?:with|mit)(?!\s+(?:respect|bezug))|wobei|dabei|hierbei|here)\b"
     r"|其中|式中|这里",
@@ -75,6 +80,12 @@ _TURNED = re.compile(
 _UP_TO = re.compile(
     r"\bup to (?:the |a |its )?(?:\w+ )?(?:sign|factor|constant|scale|order)\w*", re.IGNORECASE
 )
+_ELSEWHERE = re.compile(
+    r"\b(?:I_?\d|inertias?)\b[^.;=]{0,40}?\b(?:about|around|at) (?:the |its |their )?"
+    r"(?:joints?|pivots?|hinges?|ends?|axes|axis of rotation)\b",
+    re.IGNORECASE,
+)
+"""Moments of inertia about another point than the robot's are."""
 _HALVED = re.compile(
     r"\b[lLadr]\d(?!\s*/)[^.;=/]{0,30}?\b(?:is|are|be|denotes?|means?|stands? for)"
     r" (?:the |just |only )?half\b",
@@ -97,7 +108,8 @@ def doubtful(text: str, entry: str) -> list[tuple[str, str]]:
     for prose, typeset in _proses(text):
         front, _behind = _cut(_FRAME.sub(" ", prose))
         found += _of(front, entry, typeset) + _parts(front, entry)
-        found += [(one[0], around(prose, *one.span())) for one in _UP_TO.finditer(front)]
+        for kind in (_UP_TO, _ELSEWHERE):
+            found += [(one[0], around(prose, *one.span())) for one in kind.finditer(prose)]
     return found + _conditions(text)
 
 
@@ -188,6 +200,7 @@ def left_over(text: str, found: Iterable[tuple[str, str]], names: Iterable[str])
 @lru_cache(maxsize=64)
 def _proses(text: str) -> tuple[tuple[str, bool], ...]:
     """The pieces of a text in which words may stand, and whether letters may be products there."""
+    text = SCORE.sub(" ", text)
     left = text.partition("=")[0] if "=" in text else ""
     below = " ".join(_FONT.sub(r" \1 ", one[0].lstrip("_")) for one in _BELOW.finditer(left))
     said = [(re.sub(r"[{}\\]", " ", below), False)]
