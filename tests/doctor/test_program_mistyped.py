@@ -134,3 +134,35 @@ def numbers(text: str) -> list[float]:
         for word in "".join(c if c in "0123456789." else " " for c in text).split()
         if word != "."
     ]
+
+
+BY_RATES = """
+import numpy as np
+
+l1, l2, e = 0.3, 0.5, np.array([1, -1])*0.2/np.sqrt(2)
+mass, com, load, g = 1.0, 0.15, 1.0, 9.81
+I = mass*l1**2/12 + mass*com**2
+
+def f(xy, v, a, mode):
+    X, Y = xy[0] - e, xy[1]
+    A, B, C = 2*l1*X, 2*l1*Y, X**2 + Y**2 + l1**2 - l2**2
+    t = 2*np.arctan2(B - mode*np.sqrt(A**2 + B**2 - C**2), A + C)
+    u = np.array([np.cos(t), np.sin(t)])
+    w = (np.array([X, Y*np.ones(2)]) - l1*u)/l2
+    S = u[0]*w[1] - u[1]*w[0]
+    J = (w/(l1*S)).T
+    td, rod = J @ v, (v @ u)/(l2*S)
+    tdd = J @ a + (l1*td**2*np.sum(u*w, axis=0) + l2*rod**2)/(l1*S)
+    return I*tdd + mass*g*com*u[0] + load*np.linalg.solve(J.T, a + np.array([0, g]))
+"""
+
+
+def test_a_name_comes_before_the_number_that_it_has(tmp_path) -> None:
+    """Half or l2, which is 0.5: nothing tells them apart, and a length is rather forgotten."""
+    asked = "isotropic", "fivebar_torque_massless"
+    assert kl.diagnose(*asked, module(tmp_path / "typed_right.py", BY_RATES)).agrees
+    text = BY_RATES.replace("l2*rod**2", "rod**2")
+    told = kl.diagnose(*asked, module(tmp_path / "lost.py", text)).causes[0].sentence
+    assert (
+        "rod**2*l2" in told.partition("or else")[0] and "0.5*rod**2" in told.partition("or else")[2]
+    )

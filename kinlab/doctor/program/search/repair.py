@@ -219,7 +219,7 @@ class LineSearch:
                     rough = repair.error > TOLERANCES.formula_agrees
                     best = min(best, self.likely(edit) + _ROUGH * rough)
                     doubted = doubted or self.evidence.coincident(edit)
-            found = self._by_evidence(found)
+            found = self._by_name(self._by_evidence(found))
             if not self.stand:
                 found = in_company(found, self.likely, _SAME, self.trial, _beside)
             if below < np.inf:
@@ -330,6 +330,17 @@ class LineSearch:
         rivals = [one for one in same[1:2] if not _add_the_same(first.edits[-1], one.edits[-1])]
         first = replace(first, rivals=tuple(rivals))
         return [first, *(one for one in found if one.edits != first.edits)]
+
+    def _by_name(self, found: list[ProgramRepair]) -> list[ProgramRepair]:
+        """The name for a factor that it has as its value, where no other arm tells them apart."""
+        if not found or any(self.arms.before) or not self.evidence.coincident(found[0].edits[-1]):
+            return found
+        place = row_of(found[0].edits[-1])
+        named = (x for x in found if x.edits[-1].kind == "missing factor")
+        first = next((x for x in named if row_of(x.edits[-1]) == place), None)
+        if first is None:
+            return found
+        return [_beside(first, found[0]), *(x for x in found if x is not first)]
 
     def of_any_arm(self, found: list[ProgramRepair]) -> list[ProgramRepair]:
         """Of repairs those that hold for other arms too, where some do and some do not."""
