@@ -59,7 +59,7 @@ _SHARE = 6
 """Of that work, the part of each search beside edits that stand already."""
 _TIED = 0.06
 """Cost beyond the first repair's up to which others are looked for."""
-_DOUBTED = 0.12
+_DOUBTED = 0.14
 """The same where a factor is found that a name of the program has as its value."""
 _ROUGH, _ROUGHER = 0.15, 100.0
 """What a repair costs more that leaves differences; how much more one may leave than another."""
