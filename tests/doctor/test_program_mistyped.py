@@ -164,5 +164,5 @@ def test_a_name_comes_before_the_number_that_it_has(tmp_path) -> None:
     text = BY_RATES.replace("l2*rod**2", "rod**2")
     told = kl.diagnose(*asked, module(tmp_path / "lost.py", text)).causes[0].sentence
     assert (
-        "rod**2*l2" in told.partition("or else")[0] and "0.5*rod**2" in told.partition("or else")[2]
+        "l2*rod**2" in told.partition("or else")[0] and "0.5*rod**2" in told.partition("or else")[2]
     )

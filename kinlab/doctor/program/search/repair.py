@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import called, nodes, pieces
+from kinlab.doctor.bytecode.syntax import called, copied, nodes, pieces
 from kinlab.doctor.changes import Case, table_of
 from kinlab.doctor.glossary.linkage import linkage_meanings
 from kinlab.doctor.glossary.textbook import Glossary, meanings
@@ -59,7 +59,7 @@ _SHARE = 6
 """Of that work, the part of each search beside edits that stand already."""
 _TIED = 0.06
 """Cost beyond the first repair's up to which others are looked for."""
-_DOUBTED = 0.14
+_DOUBTED = 0.12
 """The same where a factor is found that a name of the program has as its value."""
 _ROUGH, _ROUGHER = 0.15, 100.0
 """What a repair costs more that leaves differences; how much more one may leave than another."""
@@ -335,12 +335,25 @@ class LineSearch:
         """The name for a factor that it has as its value, where no other arm tells them apart."""
         if not found or any(self.arms.before) or not self.evidence.coincident(found[0].edits[-1]):
             return found
-        place = row_of(found[0].edits[-1])
-        named = (x for x in found if x.edits[-1].kind == "missing factor")
-        first = next((x for x in named if row_of(x.edits[-1]) == place), None)
-        if first is None:
-            return found
-        return [_beside(first, found[0]), *(x for x in found if x is not first)]
+        edit, space = found[0].edits[-1], self.trial.space
+        change = edit.changes[0]
+        first = copied(change.new) if isinstance(change.new, ast.BinOp) else None
+        below = first
+        while isinstance(below, ast.BinOp) and isinstance(below.left, ast.BinOp):
+            below = below.left
+        value = getattr(getattr(below, "left", None), "value", None)
+        for name in (*self.trial.program.data, *self.trial.sets):
+            own = space.get(name)
+            if type(own) is not float or own != value or below is None:
+                continue
+            below.left = ast.Name(name, ast.Load())
+            put = (replace(change, new=first),)
+            other = replace(edit, changes=put, kind="missing factor")
+            with changed(self.trial, (other,)):
+                repair = self.verdict((*self.stand, other))
+            if repair is not None:
+                return [_beside(repair, found[0]), *found]
+        return found
 
     def of_any_arm(self, found: list[ProgramRepair]) -> list[ProgramRepair]:
         """Of repairs those that hold for other arms too, where some do and some do not."""
