@@ -9,15 +9,7 @@ import pytest
 
 import kinlab as kl
 
-TORQUE = """
-import numpy as np
-
-l1, l2 = np.array([0.30, 0.26]), np.array([0.50, 0.54])
-e = np.array([0.12, -0.12])
-mass, com = np.array([1.0, 0.8]), np.array([0.12, 0.15])
-I = np.array([0.0075, 0.0060]) + mass*com**2 + np.array([1e-5*10**2, 1.2e-5*12**2])
-m, g = 1.5, 9.81
-
+LOOP = """
 def f(xy, v, a, mode):
     X, Y = xy[0] - e, xy[1]
     A, B, C = 2*l1*X, 2*l1*Y, X**2 + Y**2 + l1**2 - l2**2
@@ -26,10 +18,23 @@ def f(xy, v, a, mode):
     w = (np.array([X, Y*np.ones(2)]) - l1*u)/l2
     S = u[0]*w[1] - u[1]*w[0]
     J = (w/(l1*S)).T
-    td = J @ v
+"""
+TORQUE = (
+    """
+import numpy as np
+
+l1, l2 = np.array([0.30, 0.26]), np.array([0.50, 0.54])
+e = np.array([0.12, -0.12])
+mass, com = np.array([1.0, 0.8]), np.array([0.12, 0.15])
+I = np.array([0.0075, 0.0060]) + mass*com**2 + np.array([1e-5*10**2, 1.2e-5*12**2])
+m, g = 1.5, 9.81
+"""
+    + LOOP
+    + """\
     tdd = J @ a + ((v @ w)**2*np.sum(u*w, axis=0)/l1 + (v @ u)**2/l2)/(l1*S**3)
     return I*tdd + mass*g*com*u[0] + m*np.linalg.solve(J.T, a + np.array([0, g]))
 """
+)
 RATES = """
 import numpy as np
 
@@ -136,25 +141,21 @@ def numbers(text: str) -> list[float]:
     ]
 
 
-BY_RATES = """
+BY_RATES = (
+    """
 import numpy as np
 
 l1, l2, e = 0.3, 0.5, np.array([1, -1])*0.2/np.sqrt(2)
 mass, com, load, g = 1.0, 0.15, 1.0, 9.81
 I = mass*l1**2/12 + mass*com**2
-
-def f(xy, v, a, mode):
-    X, Y = xy[0] - e, xy[1]
-    A, B, C = 2*l1*X, 2*l1*Y, X**2 + Y**2 + l1**2 - l2**2
-    t = 2*np.arctan2(B - mode*np.sqrt(A**2 + B**2 - C**2), A + C)
-    u = np.array([np.cos(t), np.sin(t)])
-    w = (np.array([X, Y*np.ones(2)]) - l1*u)/l2
-    S = u[0]*w[1] - u[1]*w[0]
-    J = (w/(l1*S)).T
+"""
+    + LOOP
+    + """\
     td, rod = J @ v, (v @ u)/(l2*S)
     tdd = J @ a + (l1*td**2*np.sum(u*w, axis=0) + l2*rod**2)/(l1*S)
     return I*tdd + mass*g*com*u[0] + load*np.linalg.solve(J.T, a + np.array([0, g]))
 """
+)
 
 
 def test_a_name_comes_before_the_number_that_it_has(tmp_path) -> None:
