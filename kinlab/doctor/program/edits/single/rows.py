@@ -177,12 +177,17 @@ def _with_member(row: Any, k: int, new: ast.expr) -> Any:
     return other
 
 
+def _of_axes(rows: Sequence[ast.expr]) -> list[list[ast.expr]]:
+    """The entries of three rows of three; none of others."""
+    entries = [one.elts for one in rows if isinstance(one, ast.List | ast.Tuple)]
+    square = len(entries) == len(rows) and {len(rows), *map(len, entries)} == {_THREE}
+    return entries if square else []
+
+
 def _signs_of_two(here: Here, rows: Sequence[ast.expr]) -> Iterator[ProgramEdit]:
     """Two rows or columns of a rotation matrix with the other sign: a frame is turned over."""
-    entries = [one.elts for one in rows if isinstance(one, ast.List | ast.Tuple)]
-    if len(entries) != len(rows) or {len(rows), *map(len, entries)} != {_THREE}:
-        return
-    for some in combinations(range(_THREE), 2):
+    entries = _of_axes(rows)
+    for some in combinations(range(len(entries)), 2):
         for columns in (False, True):
             turned = [
                 ast.List([_opposite(x) if (k if columns else i) in some else x
@@ -194,11 +199,9 @@ def _signs_of_two(here: Here, rows: Sequence[ast.expr]) -> Iterator[ProgramEdit]
 
 def _products_of_inertia(here: Here, rows: Sequence[ast.expr]) -> Iterator[ProgramEdit]:
     """A tensor with the other sign of its products of inertia, as other books define them."""
-    entries = [one.elts for one in rows if isinstance(one, ast.List | ast.Tuple)]
-    if len(entries) != len(rows) or {len(rows), *map(len, entries)} != {_THREE}:
-        return
+    entries = _of_axes(rows)
     texts = [[ast.unparse(x) for x in row] for row in entries]
-    if texts != [[*column] for column in zip(*texts, strict=True)]:
+    if not entries or texts != [[*column] for column in zip(*texts, strict=True)]:
         return
     turned = [
         ast.List([x if i == k else _opposite(x) for k, x in enumerate(row)], ast.Load())
