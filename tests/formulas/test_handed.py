@@ -280,7 +280,11 @@ RODS_V = "V = m1*g*l1/2*sin(q1) + m2*g*(l1*sin(q1) + l2/2*sin(q1+q2))"
 
 @pytest.mark.parametrize(
     "words",
-    ["where l1 and l2 denote half the lengths of the rods", "where $l_1$ is half the length of link 1"],
+    [
+        "where l1 and l2 denote half the lengths of the rods", "where $l_1$ is half the length of link 1",
+        "where l2 equals half the length", "where m2 is the total mass of both rods", "wobei l1 die halbe Länge ist",
+        "其中 l1 为杆长的一半",
+    ],
 )  # fmt: skip
 def test_half_a_length_is_another_length(words):
     refused("planar2r_rods", "V", f"{RODS_V}, {words}")
@@ -290,6 +294,9 @@ def test_half_a_length_is_another_length(words):
         f"{RODS_V}, where l1/2 and l2/2 are half the lengths of the uniform rods",
     )
     right("planar2r_rods", "V", f"{RODS_V}，其中杆为均质杆")
+    right("planar2r_rods", "M22", "m2*lc2^2 + I2, where lc2 is half the length of link 2")
+    (said,) = right("planar2r_rods", "V", f"l1 表示杆长的一半：{RODS_V}").remarks
+    assert "'l1 表示杆长的一半'" in said
 
 
 @pytest.mark.parametrize("score", ["(3 points)", "[2 Punkte]", "（5分）"])
@@ -303,6 +310,12 @@ def test_moments_about_another_point_are_said():
         "planar2r_rods", "V", f"{RODS_V}; I1 and I2 are taken about the joints."
     ).remarks
     assert "about the joints" in said
+    for text in (
+        "M22 = m2*lc2^2 + I2, I2 taken at the pivot",
+        "$M_{22} = m_2 l_{c2}^2 + I_2$, $I_2$ taken at the pivot",
+    ):
+        (said,) = right("planar2r_rods", "M22", text).remarks
+        assert "taken at the pivot" in said
 
 
 def test_the_words_that_were_not_read_are_said_and_cost_one_entry_alone():

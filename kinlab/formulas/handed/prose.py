@@ -86,12 +86,17 @@ _ELSEWHERE = re.compile(
     re.IGNORECASE,
 )
 """Moments of inertia about another point than the robot's are."""
-_HALVED = re.compile(
-    r"\b[lLadr]\d(?!\s*/)[^.;=/]{0,30}?\b(?:is|are|be|denotes?|means?|stands? for)"
-    r" (?:the |just |only )?half\b",
+_SHARE = re.compile(
+    r"\b(?:half|halves|twice|double[sd]?|third|quarter|total|combined|halb\w*|hälfte|doppel\w*|gesamt\w*)\b"
+    r"|半|两倍|二倍|之和|总",
     re.IGNORECASE,
 )
-"""What makes a link's length another one: ``where l1 and l2 denote half the lengths``."""
+"""Words of another size than the thing beside them."""
+_OWN = re.compile(
+    r"(?<![A-Za-z])(?:(?P<own>[lLadrmMI][1-9])(?!\w|\s*/)|(?:[lLrad]c|I[cC]|[rsc])[1-9])"
+)
+"""Names of a link's own sizes, and of what may well be a share of them: a centre's distance."""
+_CLAUSE = re.compile(r"[;,:=，。；：、]|\.(?!\d)")
 _ANGLE = re.compile(r"\bangles?\b|winkel|角", re.IGNORECASE)
 _LINK = re.compile(r"\blinks?\b|\bglied|连杆|杆", re.IGNORECASE)
 _JOINT = re.compile(r"\bjoints?\b|gelenk|关节", re.IGNORECASE)
@@ -104,7 +109,7 @@ def doubtful(text: str, entry: str) -> list[tuple[str, str]]:
         text: as typed.
         entry: what the formula is asked for.
     """
-    found: list[tuple[str, str]] = []
+    found = [("", clause) for clause in _shares(text)]
     for prose, typeset in _proses(text):
         front, _behind = _cut(_FRAME.sub(" ", prose))
         found += _of(front, entry, typeset) + _parts(front, entry)
@@ -119,13 +124,22 @@ def explained_by(text: str) -> str:
     for prose, typeset in _proses(text):
         _front, behind = _cut(prose)
         if behind:
-            if _HALVED.search(_flat(text)):
-                found.append(("", behind.strip(" ;,.:")[:_MOST]))
+            found += [("", clause) for clause in _shares(text)]
             behind = _INERTIA.sub(" ", behind)
             found += [one for one in _of(behind, BEHIND, typeset) if not _used(one[0], text)]
             if _ANGLE.search(behind) and _LINK.search(behind) and not _JOINT.search(behind):
                 found.append(("", behind.strip()[:_MOST]))  # the angle of link 2 may be a sum
     return found[0][1] if found else ""
+
+
+def _shares(text: str) -> list[str]:
+    """What makes a size of the robot's another one: ``l1 and l2 denote half the lengths``."""
+    found = []
+    for clause in _CLAUSE.split(_WHERE.sub(";", _flat(text))):
+        name = _OWN.search(clause)
+        if name and name["own"] and _SHARE.search(clause):
+            found.append(clause.strip()[:_MOST])
+    return found
 
 
 def outside_formulas(text: str) -> list[str]:

@@ -43,6 +43,8 @@ _BRACKETS = re.compile(r"\(\s*[\0\s,.;:?!'-]*\0[\0\s,.;:?!'-]*\)|\[\s*\0[\0\s]*\
 _LABEL = re.compile(
     r"^\s*(?:(?:[QqAa]?\s?\d{0,2}\s?\(?[a-h]?|\(?[ivx]{1,4})[).:](?![\d*/^])\s*)+(?=\S)"
 )
+_SUBJECT = re.compile(r"(?<==)([^=,;]+)[,;]\s*I_?\{?[a-z]{0,2}\d\}?\s*$")
+"""Whose moment of inertia a sentence behind a formula is about: ``..., I2 taken at the pivot``."""
 _SHORT = 4
 _LONG = 4
 """Letters from which on what is in no list is a word."""
@@ -82,8 +84,11 @@ def without_sentences(text: str, entry: str) -> str:
     marked = _marked(opened)
     if _GAP not in marked and len(MATHS.findall(text)) < 2:
         return text
+    *spoken, ending = marked.split(_GAP)
     parts = [
-        one for part in marked.split(_GAP) for one in re.split(r"(?<=\$)\s*[\n,;]\s*(?=\$)", part)
+        one
+        for part in [*(_SUBJECT.sub(r"\1", part) for part in spoken), ending]
+        for one in re.split(r"(?<=\$)\s*[\n,;]\s*(?=\$)", part)
     ]
     pieces = [piece for part in parts for piece in _apart(part)]
     pieces = [piece for piece in pieces if piece]
