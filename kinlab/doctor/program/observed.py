@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import sys
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from types import FrameType
 from typing import Any
@@ -156,17 +157,15 @@ def _calls(trial: Trial, states: Sequence[tuple[Any, ...]]) -> list[int]:
         elif event == "return" and frame.f_code in codes and len(running) > 1:
             running.pop()
 
-    before = sys.getprofile()
-    sys.setprofile(count)
-    try:
+    def run() -> None:
+        sys.setprofile(count)  # of this thread alone: whoever measures the program's keeps his
         with quietly(), trial.as_loaded():
             for state in states:
                 trial.load()
                 trial.function(*state)
-    finally:
-        sys.setprofile(before if callable(before) else None)
-        if before is not None and not callable(before):
-            before.enable()  # cProfile's own object
+
+    with ThreadPoolExecutor(1) as beside:
+        beside.submit(run).result()
     return found
 
 
