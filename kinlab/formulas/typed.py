@@ -427,6 +427,8 @@ _ENTRY = re.compile(r"([A-Za-z]+)_?((?:\d_?\d?_?\d?)?)", re.ASCII)
 _PRINTED = {"fk": "T", "L": "lagrangian"}
 """What ``kinlab derive`` calls a quantity whose name elsewhere is another."""
 _OF_STATE = re.compile(r"\s*(?:\\left)?\s?\(([^()]*[A-Za-zθ][^()]*)\)$")
+_TIMES_RATES = re.compile(r"(?<=\))\s*(?:\\cdot\s*)?\\dot\s*(?:\{\s*)?\\?[A-Za-z]+\s*\}?$")
+"""The rates that a matrix is multiplied by, behind its name: C(q, \\dot q) \\dot q."""
 _IN_BASE = re.compile(r"^(?:\{\s*\})?\^(?:0|\{\s*0\s*\})(?:_(?:\w|\{\s*\w\s*\}))?")
 """The base frame in front of a name, and of which frame: {}^0_4T."""
 _NAMED = re.compile(r"([a-z_]{2,})(\[[\d:,\s-]+\])?")
@@ -474,7 +476,9 @@ _WHERE = re.compile(
     rf"|(?<=[\s,;])with\s+{_NAMED_NEXT})\s*"
 )
 """What stands between a formula and what is explained behind it."""
-_GOES_ON = re.compile(r"(?<=[-+*/^=(,])\s*\n|\n(?=\s*[-+*/^=),])")
+_GOES_ON = re.compile(
+    r"(?<=[-+*/^=(,])\s*\n|\n(?=\s*(?:[-+*/^=),]|(?:\\text\s*\{\s*)?(?:where|with)\b))"
+)
 _DEFINED = re.compile(r":\s*=|\\coloneqq(?![A-Za-z])")
 _SIGNED = re.compile(r"[&\s]*[-+*/]")
 _OWN_NAME = re.compile(r"[\\\w{} ]+")
@@ -492,9 +496,9 @@ def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
         The writer's names with their formulas, as typed; and the formula itself: the one with the
         entry's name, the one without a name, the one in front of ``where``, or the last one.
     """
-    lines = _equations(text)
-    lines.sort(key=lambda line: (begins_with(line, entry), "=" not in line))
-    if lines and not begins_with(lines[-1], entry) and "=" in lines[-1]:
+    lines, writing = _equations(text), hand([text])
+    lines.sort(key=lambda line: (begins_with(line, entry, writing), "=" not in line))
+    if lines and not begins_with(lines[-1], entry, writing) and "=" in lines[-1]:
         lines.sort(key=lambda line: not explains_another(line, lines))
     own = [line.partition("=") for line in lines[:-1]]
     if not own or any(line.count("=") != 1 for line in lines[:-1]):
@@ -502,8 +506,10 @@ def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
     left = lines[-1].partition("=")[0] if "=" in lines[-1] else ""
     if not all(_is_own_name(name.strip("& ")) for name, *_rest in own):
         return {}, text
-    if entry and left and not of_one_name(entry_name(left), entry_name(entry)):
-        return {}, text
+    if entry and left:
+        named = entry_name(left, writing=writing)
+        if not of_one_name(named, entry_name(entry)):
+            return {}, text
     dollars = "$" if is_latex(text) else ""
     formulas = {_own_name(name): f"{dollars}{bare(right)}{dollars}" for name, _sign, right in own}
     return formulas, f"{dollars}{lines[-1]}{dollars}"
@@ -559,14 +565,14 @@ def several(text: str, entry: str) -> dict[str, str]:
         Each with the equations that explain the writer's own names; empty where none, or only
         one, is an entry of the whole.
     """
-    cut = _equations(text)
+    cut, writing = _equations(text), hand([text])
     lines = [line for line in cut if "=" in line]
     named: dict[str, str] = {}
     own: list[str] = []
     with suppress(ExpressionError):
         head, places = _head_and_places(entry_name(entry))
         for line in lines if not places else []:
-            name = entry_name(line.partition("=")[0])
+            name = entry_name(line.partition("=")[0], writing=writing)
             mine, here = _head_and_places(name)
             if not here and any({head, mine} <= group for group in _MEANT):
                 return {}  # the whole itself
@@ -690,13 +696,14 @@ def named_in(text: str) -> list[str]:
     return [name for name in found if name and _OWN_NAME.fullmatch(re.sub(r"[()\[\],]", "", name))]
 
 
-def begins_with(line: str, entry: str) -> bool:
+def begins_with(line: str, entry: str, writing: Hand | None = None) -> bool:
     """Whether a line gives the entry by its own name."""
     left, sign, _right = line.partition("=")
     if not sign or not entry:
         return False
     try:
-        own, asked = _head_and_places(entry_name(left)), _head_and_places(entry_name(entry))
+        own = _head_and_places(entry_name(left, writing=writing))
+        asked = _head_and_places(entry_name(entry))
     except ExpressionError:
         return False
     rotation = {own[0], asked[0]} <= {*_POSES, "r"} and own[1] == asked[1]
@@ -754,7 +761,7 @@ def entry_name(text: str, place: str = "expression", writing: Hand | None = None
     """
     if len(text) > _LONGEST_NAME:
         raise refused(place, N_("{text}... is no name of an entry"), text=text[:30])
-    typed = _IN_BASE.sub("", _OF_STATE.sub("", bare(text).strip("& ")).strip())
+    typed = _IN_BASE.sub("", _OF_STATE.sub("", _TIMES_RATES.sub("", bare(text).strip("& "))).strip())
     if _LAMBDA.fullmatch(typed):
         return latex.LAMBDA
     if _DETERMINANT.fullmatch(typed):

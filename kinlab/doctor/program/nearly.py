@@ -31,7 +31,7 @@ def of_small_numbers(search: LineSearch) -> Excuse | None:
     of that hardly anything is left of the error.
     """
     count = len(search.asked.wanted)
-    before = search.asked.error(range(count))
+    before = search.asked.off
     if not TOLERANCES.formula_agrees < before <= TOLERANCES.may_be_rounded:
         return None
     small = [place for place in numbers(search.trial, search.observed) if _is_small(place, search)]

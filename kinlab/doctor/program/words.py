@@ -30,7 +30,7 @@ from kinlab.doctor.program.own.typed import line_of
 from kinlab.doctor.program.places import BLOCKS, DATA, ProgramEdit, changed, row_of
 from kinlab.doctor.program.read import read
 from kinlab.doctor.program.search.repair import LineSearch, ProgramRepair
-from kinlab.doctor.program.several.repairs import several
+from kinlab.doctor.program.several.repairs import beside_numbers, several
 from kinlab.doctor.program.trial import FailedError, FieldChange, NoProgramError, Trial, quietly
 from kinlab.doctor.verdicts import Excuse, rounded_otherwise
 from kinlab.host.language import N_, _
@@ -167,7 +167,7 @@ def lines(
         yield WrongLines([], search.written_out, numbers, excuse)
         return
     odd = any(True for _edit in of_table(search.trial, search.observed, case.robot))
-    for found in (LineSearch.singles, several):
+    for found in (_first, several):
         repairs = found(search)[:_MOST]
         if not search.asked.faithful:
             return  # an edit has written into what the program keeps
@@ -180,6 +180,11 @@ def lines(
         yield WrongLines(
             causes, search.written_out, numbers, None, odd, stepping, (*sure,), (*hidden,)
         )
+
+
+def _first(search: LineSearch) -> list[ProgramRepair]:
+    """What is looked for first: single edits, or what is wrong beside a mistyped number."""
+    return beside_numbers(search) or search.singles()
 
 
 def _is_sure(repair: ProgramRepair) -> bool:

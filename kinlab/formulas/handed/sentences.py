@@ -20,7 +20,7 @@ _WORD = re.compile(
     rf"(?<![\w\\{{.])[{LATIN}]{{2,}}(?:['’-][{LATIN}]{{2,}}|['’]s)*(?![\w(\[{{}}])|[{CHINESE}]+"
 )
 _DOTTED = re.compile(
-    r"\b(?:i\.\s?e|e\.\s?g|d\.\s?h|z\.\s?b|q\.\s?e\.\s?d|bzw|w\.\s?r\.\s?t|resp|ans|eq|no|nr|sol|fig)\.(?=\s|,|$|:)",
+    r"\b(?:i\.\s?e|e\.\s?g|d\.\s?h|z\.\s?b|q\.\s?e\.\s?d|bzw|w\.\s?r\.\s?t|resp|ans|eqn?|no|nr|sol|fig|vgl|abb|gl|cf|sec|ch|tab)\.(?=\s|,|$|:)",
     re.IGNORECASE,
 )
 _DENOTES = re.compile(
@@ -228,7 +228,8 @@ def _of_entry(pieces: list[str], entry: str) -> list[str]:
 def _equations(piece: str) -> list[str]:
     if _ALIGNED.search(piece):
         return [piece]
-    return [one for one in re.split(r"\n(?=[^\n=]{1,40}=)|;", piece) if one.strip()]
+    parts = parts_at(piece, ";")
+    return [x for one in parts for x in re.split(r"\n(?=[^\n=]{1,40}=)", one) if x.strip()]
 
 
 def _is_equation(text: str) -> bool:

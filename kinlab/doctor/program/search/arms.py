@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -108,8 +109,13 @@ class OtherArms:
         (before, _), (apart, larger) = self.before, self.of(several)
         if before is not None and apart is not None:
             odd = apart.odd and len(several) > 1 and not self.hold_for(apart)
-            own = (edit for edit in several if self._sets_own(edit))
+            own = [edit for edit in several if self._sets_own(edit)]
             put = {(x.node if x.part == DATA else id(x.node), x.place) for x in own}
+            put |= (
+                self._replaced(before)
+                if any(x.of_the_arm and x.part != DATA for x in own)
+                else set()
+            )
             if odd or before.fitting - apart.fitting - put:
                 return True  # a name has a number that none has of those that are called so
             if apart.whole and self.at(apart) is not None:
@@ -121,6 +127,11 @@ class OtherArms:
         if not (whole or free) or (larger is not None and self.hold_for(larger)):
             return False  # nor is it where it holds for unrelated numbers, understood wholly or not
         return apart is None or self.at(apart) is None or not self.hold_for(apart)
+
+    def _replaced(self, before: OtherArm) -> set[Any]:
+        """The numbers of the text that are in it no more, of a row of which several were others."""
+        there = {id(node) for tree in self.asked.trial.trees for node in nodes(tree)}
+        return {one for one in before.fitting if isinstance(one[0], int) and one[0] not in there}
 
     def _counts(self, edit: ProgramEdit) -> bool:
         """Whether an edit is of a whole number in the text, a factor: of none of the arm's."""

@@ -180,6 +180,15 @@ class Asked:
         gap = np.abs(values - self.wanted[list(which)]).reshape(len(which), -1)
         return float(np.max(gap.max(axis=1, initial=0.0) / self.sizes[list(which)]))
 
+    @property
+    def off(self) -> float:
+        """The largest relative error of the program's own answers."""
+        if self.case.hand.shape != self.wanted.shape:
+            return np.inf
+        hand = self.as_compared(self.case.hand, self.wanted)
+        worst = np.max(relative_errors(hand, self.wanted))
+        return float(worst) if np.isfinite(worst) else np.inf
+
     def fits(self) -> bool:
         """Whether the program as it stands now is right at every state."""
         return self.error(range(len(self.wanted))) <= self.allowed

@@ -129,7 +129,7 @@ class LineSearch:
     def __init__(self, program: OwnProgram, case: Case, wanted: Array, allowed: float) -> None:
         self.stand: tuple[ProgramEdit, ...] = ()
         self.tried: list[tuple[ProgramEdit, Array]] = []
-        self.most = _WORK
+        self.most, self.thorough = _WORK, True
         self.trial, self.case = Trial(program), case
         self.asked = Asked(self.trial, case, wanted, allowed)
         states = [
@@ -163,11 +163,17 @@ class LineSearch:
             for node in nodes(part.tree)
         )
 
-    def beside(self, stand: tuple[ProgramEdit, ...]) -> LineSearch:
-        """The search for more, while edits stand in the program."""
+    def beside(self, stand: tuple[ProgramEdit, ...], thorough: bool = False) -> LineSearch:
+        """The search for more, while edits stand in the program.
+
+        Args:
+            stand: the edits.
+            thorough: whether as much is done as if nothing stood; else a part of it.
+        """
         other = copy.copy(self)
-        other.stand, other.tried = stand, []
-        other.most, other.in_lanes, other.heavy = self.most // _SHARE, 0, False
+        other.stand, other.tried, other.thorough = stand, [], thorough
+        if not thorough:
+            other.most, other.in_lanes, other.heavy = self.most // _SHARE, 0, False
         other.work = copy.copy(self.work)
         other.work.done = 0
         other.arms = replace(self.arms, work=other.work)
@@ -187,9 +193,9 @@ class LineSearch:
         """
         found: list[ProgramRepair] = []
         best, doubted = np.inf, False
-        limit = self.most if self.stand else _ALONE
+        limit = _ALONE if self.thorough else self.most
         with quietly():
-            most = _WEIGHED // 3 if self.stand else _WEIGHED
+            most = _WEIGHED if self.thorough else _WEIGHED // 3
             every = chosen(self.asked, self.observed, self.known, self.dimensions, below, most)
             more = self._waits()
             dear = {edit: self.likely(edit) + more[edit.part] for edit in every}
@@ -200,7 +206,7 @@ class LineSearch:
                 if found and self.likely(edit) > farthest:
                     continue
                 self.work.done += self.work.of(edit)
-                if self.work.done > limit and not (found or self.stand) and turn <= _QUICK:
+                if self.work.done > limit and self.thorough and not found and turn <= _QUICK:
                     limit = _ALONE + _MORE_WORK  # lanes would take as long
                 if self.work.done > limit or (self.heavy and turn == _FIRST and not found):
                     found = found or self._in_lanes(tried[turn:][:_FURTHER])

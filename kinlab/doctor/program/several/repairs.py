@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.doctor.glossary.meaning import meaning_of
+from kinlab.doctor.program.edits.numbers.as_the_arm import of_table
 from kinlab.doctor.program.places import DATA, ProgramEdit, changed, row_of
 from kinlab.doctor.program.search.repair import LineSearch, ProgramRepair
 from kinlab.doctor.program.several.effects import Chosen, Effects, Way, effects_of
@@ -66,6 +67,8 @@ _STEPPING = 4
 """And the part for the search beside the likeliest first edit."""
 _DEEPEST = 2
 """Edits beside which one more is looked for, and no two."""
+_ODD = 2
+"""Numbers that are off beside the arm's of which each is mended first."""
 _POSE = (4, 4)
 """The shape of an answer that is a product of matrices."""
 
@@ -81,6 +84,28 @@ def several(search: LineSearch) -> list[ProgramRepair]:
         return looking.of_one_line(
             search, [_reduced(repair, search) for repair in looking.found(search)]
         )
+
+
+def beside_numbers(search: LineSearch) -> list[ProgramRepair]:
+    """One or two edits beside numbers that are mistyped, where these alone do not do.
+
+    Beside the arm's table they are wrong whatever else is.
+    """
+    odd = _mistyped(search)
+    if not odd:
+        return []
+    with quietly():
+        looking, tried = _Several(search.most), _Tried(search)
+        if any(tried.fits(way) for way in odd):
+            return []
+        for way in odd:
+            with changed(search.trial, way):
+                here = _beside(search, way, thorough=True)
+                found = here.singles() or looking.found(here)
+            if found:
+                found = looking.settled(search, found, 1)
+                return [_reduced(one, search) for one in found]
+    return []
 
 
 def _reduced(repair: ProgramRepair, search: LineSearch) -> ProgramRepair:
@@ -118,19 +143,19 @@ class _Several:
         if not found and pose:
             found = tried.likeliest(known, known.in_a_row(2, _POSE))
         if found:
-            return self._settled(search, found)
+            return self.settled(search, found)
         in_order = InOrder(search, known, 0 if search.stand else _IN_ORDER)
         one_by_one = in_order.found()
         found = [] if one_by_one is None else self._fewer(search, [one_by_one])
         found = found or self._last(search, in_order.reached[:_WAYS])
         if found:
-            return self._settled(search, found)
+            return self.settled(search, found)
         together = TriedTogether(search, known)
         most = 0 if search.stand else _IN_STAGES
         stages = InStages(search, known, together, in_order.reached, most)
         found = tried.of_ways(stages.ways(two=False))
         if found:
-            return self._settled(search, found)
+            return self.settled(search, found)
         for some in together.pairs():  # what holds for this arm alone is not told, others may be
             found = tried.likeliest(known, some)
             if found:
@@ -143,7 +168,7 @@ class _Several:
         found = found or tried.of_ways(stages.ways(two=True))
         found = found or self._one_more(search, stages.reached[: _WAYS + 1], _REACHED)[0]
         if found:
-            return self._settled(search, found)
+            return self.settled(search, found)
         most = 1 if together.thorough else _STEPS - 1
         firsts = in_order.reached[:most]
         if not firsts:
@@ -157,7 +182,7 @@ class _Several:
         if not together.thorough:
             wider = None if search.stand else AtRest(search).effects(known, search.most // _RESTING)
             joined = known if wider is None else known.beside(wider)
-            found = self._settled(search, tried.likeliest(joined, joined.pairs()))
+            found = self.settled(search, tried.likeliest(joined, joined.pairs()))
         if not found:
             most = 1 if together.thorough else _STEPS
             gaining = _apart([joined.alike[k][0] for k in joined.gaining])[:most]
@@ -169,7 +194,7 @@ class _Several:
                 found = tried.likeliest(known, known.in_a_row(3, _POSE))
             if not found and not together.usable:
                 found = tried.likeliest(joined, joined.triples())
-            found = self._settled(search, found)
+            found = self.settled(search, found)
         return found
 
     def _last(self, search: LineSearch, ways: list[Way]) -> list[ProgramRepair]:
@@ -245,10 +270,10 @@ class _Several:
             except NoProgramError:
                 continue
             if found:
-                return self._settled(search, found, 1)
+                return self.settled(search, found, 1)
         return []
 
-    def _settled(
+    def settled(
         self, search: LineSearch, found: list[ProgramRepair], turns: int = 0
     ) -> list[ProgramRepair]:
         """The first repair with each of its edits the likeliest beside the others.
@@ -272,15 +297,37 @@ class _Several:
             for one in better:
                 more = search.left_right((*others, one.edits[-1])) - right
                 if here.likely(one.edits[-1]) < cost + (_GAINED if more > 0 else _LOST) * more:
-                    return self._settled(search, better, turns + 1)
+                    return self.settled(search, better, turns + 1)
         return found
 
 
-def _beside(search: LineSearch, edits: Way) -> LineSearch:
+def _beside(search: LineSearch, edits: Way, thorough: bool = False) -> LineSearch:
     """The search for more while these edits stand, too, with what is right by them."""
-    here = search.beside((*search.stand, *edits))
+    here = search.beside((*search.stand, *edits), thorough)
     here.look_again()
     return here
+
+
+def _mistyped(search: LineSearch) -> list[Way]:
+    """Numbers that are off beside the arm's table, as it has them: all of them, and each alone."""
+    own = of_table(search.trial, search.observed, search.case.robot)
+    odd = _apart([edit for edit in own if _is_mistyped(edit)])
+    each: list[Way] = [(edit,) for edit in odd]
+    return [tuple(odd), *each] if 1 < len(odd) <= _DEEPEST else each[:_ODD]
+
+
+def _is_mistyped(edit: ProgramEdit) -> bool:
+    """Whether numbers are others with a slip: two of a row exchanged, a sign, the point, digits."""
+    if edit.kind == "entries swapped":
+        return True
+    old, new = edit.numbers or (0.0, 0.0)
+    typed, meant = (f"{abs(x):.12g}".replace(".", "").strip("0") for x in (old, new))
+    if abs(old) == abs(new) or sorted(typed) == sorted(meant):
+        return bool(old)
+    short, long = sorted((typed, meant), key=len)
+    if len(short) == len(long) > 1:
+        return sum(map(str.__ne__, short, long)) == 1
+    return len(short) > 1 and any(long[:k] + long[k + 1 :] == short for k in range(len(long)))
 
 
 def _apart(edits: list[ProgramEdit]) -> list[ProgramEdit]:
@@ -315,7 +362,7 @@ class _Tried:
             more = known.edits(chosen, _EVERY) if turn < _VERIFIED else iter(())
             for k, way in enumerate(chain(few, (way for way in more if way not in few))):
                 # what is right by this arm's numbers alone may have a sibling that is right
-                if k == len(few) and not self._fits(few[0]):
+                if k == len(few) and not self.fits(few[0]):
                     break
                 most -= self._cost(way)
                 if self._repair(way) is not None:
@@ -332,13 +379,13 @@ class _Tried:
             most -= self._cost(way)
             if most < -self.search.most // 8:
                 break
-            if way != fitting[0] and self._fits(way):
+            if way != fitting[0] and self.fits(way):
                 fitting.append(way)
         return self._ranked(fitting)
 
     def of_ways(self, ways: list[Way]) -> list[ProgramRepair]:
         """What combinations that fit at some states make of it, the likeliest first."""
-        fitting = [way for way in ways if self._fits(way)]
+        fitting = [way for way in ways if self.fits(way)]
         return self._ranked(fitting) if fitting else []
 
     def _cost(self, way: Way) -> int:
@@ -352,7 +399,7 @@ class _Tried:
         except NoProgramError:
             return None
 
-    def _fits(self, way: Way) -> bool:
+    def fits(self, way: Way) -> bool:
         """Whether edits make the program right at the first states."""
         try:
             with changed(self.search.trial, way):

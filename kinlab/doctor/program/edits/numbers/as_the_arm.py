@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Container, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations_with_replacement, islice, product
@@ -208,7 +208,7 @@ def _row(k: int, some: Sequence[tuple[_Cell, float]], whole: Sequence[_Cell]) ->
     kind = "entries swapped" if sorted(old) == sorted(new) else "number"
     if first.place is None:
         changes = [change for cell, right in some for change in cell.edit(right).changes]
-        return ProgramEdit(first.part, tuple(changes), kind, _COST, first.node)
+        return ProgramEdit(first.part, tuple(changes), kind, _COST, first.node, of_the_arm=True)
     both = [(cell.place, right) for cell, right in some if cell.place is not None]
     changes = [change for edit in together(both) for change in edit.changes]
     told = (", ".join(map(shown, old)), ", ".join(map(shown, new)))
@@ -285,22 +285,31 @@ def _named(trial: Trial, observed: Observed, table: DHTable) -> Iterator[tuple[_
     }
     known = {name: value for name, value in sums.items() if value}  # of rods: lc1 = l1/2
     known |= {name: float(value) for name, value in words.values.items()}
+    known |= {name.lower(): value for name, value in known.items() if name.lower() not in known}
     for leaf in leaves(trial):
-        if not leaf.place and leaf.node in known:
-            yield _Cell(float(leaf.value), leaf), known[leaf.node]
+        name = _label(leaf.place[-1] if leaf.place else leaf.node, known)
+        if name and all(isinstance(at, str) for at in leaf.place):
+            yield _Cell(float(leaf.value), leaf), known[name]
     for part, tree in enumerate(trial.trees):
         for line in (node for node in nodes(tree) if isinstance(node, ast.Assign)):
-            for name, holder, field in _given(line):
-                cell = _cell(observed, part, holder, field) if name in known else None
+            for told, holder, field in _given(line):
+                name = _label(told, known)
+                cell = _cell(observed, part, holder, field) if name else None
                 if cell is not None:
                     yield cell, known[name]
+
+
+def _label(typed: Any, known: Container[str]) -> str:
+    """The arm's name for one as it is typed: d3 of ``D3`` and of ``d_3``; empty where none is."""
+    plain = str(typed).replace("_", "")
+    return next((name for name in (plain, plain.lower()) if name in known), "")
 
 
 def _given(line: ast.Assign) -> Iterator[tuple[str, Any, Any]]:
     """The names that a statement sets, each with where its value hangs."""
     target, value = line.targets[0], line.value
-    if isinstance(target, ast.Name):
-        yield target.id, line, "value"
+    if isinstance(target, ast.Name | ast.Attribute):
+        yield getattr(target, "id", getattr(target, "attr", "")), line, "value"
     elif isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
         for k, one in enumerate(target.elts[: len(value.elts)]):
             if isinstance(one, ast.Name):
@@ -333,18 +342,23 @@ _TYPED = (
 """What a number is typed with: ``-np.pi/2``."""
 
 
-def _cells(rows: list[ast.expr], k: int, row: ast.expr) -> Iterator[tuple[Any, Any, Any]]:
-    """The numbers of a row: the key of each, and where it hangs."""
+def _cells(rows: list[Any], k: int, row: ast.expr) -> Iterator[tuple[Any, Any, Any]]:
+    """The numbers of a row, and of the rows in it: the key of each, and where it hangs."""
     if isinstance(row, ast.List | ast.Tuple):
-        yield from ((j, row.elts, j) for j in range(len(row.elts)))
+        below: list[tuple[Any, Any, Any]] = [(j, row.elts, j) for j in range(len(row.elts))]
     elif isinstance(row, ast.Dict):
         keys = [getattr(key, "value", None) for key in row.keys]
-        yield from ((key, row.values, j) for j, key in enumerate(keys))
+        below = [(key, row.values, j) for j, key in enumerate(keys)]
     elif isinstance(row, ast.Call):
-        yield from ((j, row.args, j) for j in range(len(row.args)))
-        yield from ((word.arg, word, "value") for word in row.keywords)
+        below = [(j, row.args, j) for j in range(len(row.args))]
+        below += [(word.arg, word, "value") for word in row.keywords]
     else:
-        yield None, rows, k
+        below = [(None, rows, k)]
+    for key, holder, field in below:
+        yield key, holder, field
+        inner = FieldChange(holder, field, None).now
+        if isinstance(inner, ast.List | ast.Tuple):
+            yield from (((key, j), inner.elts, j) for j in range(len(inner.elts)))
 
 
 def _wrong(values: Sequence[float], columns: Sequence[Array]) -> Iterator[tuple[int, float]]:
