@@ -216,6 +216,9 @@ class Tolerances:
     same_relation: float = 1e-7
     """Relative difference below which a solved number is the one that a relation gives."""
 
+    rounding_leaves: float = 1e-13
+    """Size in SI units of what rounding leaves of a zero: sums of products with cos(pi/2)."""
+
     typed_endless: float = 1e-6
     """Relative difference up to which a typed number of many digits is pi, a third, a root of 2."""
 

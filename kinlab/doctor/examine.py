@@ -292,10 +292,15 @@ def _possible(
                 noise = None if exact or rough else verdicts.to_digits(case, engine)
                 if noise is not None:
                     return [], (), noise, None
-                # what is so near has no several slips but in its numbers
+                # what is so near has no several slips but in its numbers, or such as leave nothing
                 some = looking if not (near and program.stepping) else ()
                 edited = [c for more in some for c in _exactly(more.causes, worst)]
-                edited = [c for c in edited if not near or _OF_NUMBERS >= {*c.kinds}]
+                nothing = TOLERANCES.left_of_several
+                edited = [
+                    c
+                    for c in edited
+                    if not near or c.error_after <= nothing or _OF_NUMBERS >= {*c.kinds}
+                ]
             elif exact and not program.written_out:
                 # two lines may do it together, but of a convention, which is one thing; and a
                 # number that is wrong, too, may do nothing as long as a frame is another

@@ -761,7 +761,9 @@ def entry_name(text: str, place: str = "expression", writing: Hand | None = None
     """
     if len(text) > _LONGEST_NAME:
         raise refused(place, N_("{text}... is no name of an entry"), text=text[:30])
-    typed = _IN_BASE.sub("", _OF_STATE.sub("", _TIMES_RATES.sub("", bare(text).strip("& "))).strip())
+    typed = _IN_BASE.sub(
+        "", _OF_STATE.sub("", _TIMES_RATES.sub("", bare(text).strip("& "))).strip()
+    )
     if _LAMBDA.fullmatch(typed):
         return latex.LAMBDA
     if _DETERMINANT.fullmatch(typed):

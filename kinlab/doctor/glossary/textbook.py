@@ -7,7 +7,8 @@ joints lie as the table's convention has them.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,6 +16,7 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array
 from kinlab.doctor.glossary.spatial import PlacedLinks, Thing, moving, pushing, still
 from kinlab.engine import dynamics, kinematics, lagrange, links
+from kinlab.model.dh import DHTable
 from kinlab.model.link import Convention, steiner
 from kinlab.model.robot import Robot
 from kinlab.tolerances import TOLERANCES
@@ -80,6 +82,18 @@ def meanings(robot: Robot, arguments: dict[str, Array]) -> Glossary:
     if {"v", "tau"} <= set(given) and "a" not in given and not robot.singular_mass:
         given["a"] = dynamics.forward_dynamics(robot, given["q"], given["v"], given["tau"])
     return _Gathered(robot, given).glossary()
+
+
+def without_base(robot: Any) -> Robot | None:
+    """The same arm, whose base is turned or moved by a transform of its table, without that.
+
+    None of one that has no such transform. What does not depend on it is often worked out so.
+    """
+    table: DHTable | None = getattr(robot, "table", None)
+    if table is None or np.array_equal(table.base, np.eye(4)):
+        return None
+    gravity = np.asarray(table.base)[:3, :3].T @ np.asarray(table.gravity)
+    return Robot.from_dh(replace(table, base=np.eye(4), gravity=gravity))
 
 
 class _Gathered:

@@ -167,11 +167,13 @@ def lines(
         yield WrongLines([], search.written_out, numbers, excuse)
         return
     odd = any(True for _edit in of_table(search.trial, search.observed, case.robot))
-    for found in (_first, several):
+    for found in (beside_numbers, LineSearch.singles, several):
         repairs = found(search)[:_MOST]
         if not search.asked.faithful:
             return  # an edit has written into what the program keeps
         told = [one for one in (believed(repair, search) for repair in repairs) if one]
+        if found is beside_numbers and not told:
+            continue
         causes = [cause_of(one, search) for one in told]
         pairs = zip(causes, told, strict=True)
         hidden = ((cause, kind) for cause, one in pairs if (kind := _hiding(one, search)))
@@ -180,11 +182,6 @@ def lines(
         yield WrongLines(
             causes, search.written_out, numbers, None, odd, stepping, (*sure,), (*hidden,)
         )
-
-
-def _first(search: LineSearch) -> list[ProgramRepair]:
-    """What is looked for first: single edits, or what is wrong beside a mistyped number."""
-    return beside_numbers(search) or search.singles()
 
 
 def _is_sure(repair: ProgramRepair) -> bool:

@@ -20,7 +20,7 @@ from kinlab.doctor.bytecode.syntax import called, factors, names, nodes, pieces
 from kinlab.doctor.glossary.meaning import as_vector
 from kinlab.doctor.glossary.textbook import Glossary, Row, Sense
 from kinlab.doctor.program.edits.scope.forms import summands
-from kinlab.doctor.program.grounds.called import kinds_called, unlike
+from kinlab.doctor.program.grounds.called import kinds_called, stem, unlike
 from kinlab.doctor.program.grounds.helpers import true_helpers
 from kinlab.doctor.program.observed import Observed, Seen
 from kinlab.doctor.program.places import DATA, ProgramEdit, paired
@@ -75,6 +75,8 @@ _STATES = ("q", "qd", "qdd", "positions", "velocities", "accelerations", "given"
 """What is given: another name for it may be meant to be more."""
 _OF_THE_WHOLE = (*_WHOLLY, "transposed", "missing matrix", "missing term")
 """Kinds of edit that may as well stand where a value is worked out."""
+_CENTRES, _MASSES = ("lc", "lg", "ac", "rc"), ("m", "mass")
+"""Names of the centre of a link, and of its mass, without their numbers."""
 _SPOILING = ("sign", "factor", "number", "power", "parentheses", "extra term", "missing factor")
 """Kinds of edit that leave no right value right; another index makes another thing."""
 
@@ -131,7 +133,7 @@ class Grounds:
         self.trusted -= self.doubted  # at rest what moves is silent
         self._below()
         self.helpers, self.mirrored = true_helpers(trial, observed)
-        self.crossing = {k for k in self.helpers if self._is_skew(trial.trees[k])}
+        self.crossing = {k for k in self.helpers if self._has_one_order(trial.trees[k])}
 
     def against(self, edit: ProgramEdit) -> float:
         """What an edit costs more than it would where nothing is known to be right."""
@@ -165,7 +167,8 @@ class Grounds:
         mirrored = edit.kind == "sign" and edit.part in self.mirrored
         if mirrored or self._makes_a_chain(edit):
             return -_MEANT
-        more = _UNLIKE if self._adds_unlike(edit.changes[0].new) else 0.0
+        unlike_ = self._adds_unlike(edit.changes[0].new) or self._takes_another_centre(edit)
+        more = _UNLIKE if unlike_ else 0.0
         more += _AGREED if id(edit.node) in self.agreed else 0.0
         more += _USED * self._where_it_is_used(edit) + _RENAMED * self._turns_a_renamed(edit)
         return more + (_TRUSTED if edit.part in self.trusted else 0.0)
@@ -257,12 +260,18 @@ class Grounds:
             self._wholes[key] = frozenset(one.what for one in senses if not one.form)
         return self._wholes[key]
 
-    def _is_skew(self, tree: ast.AST) -> bool:
-        """Whether a part gives the matrix of a cross product, whose transpose is its opposite."""
+    def _has_one_order(self, tree: ast.AST) -> bool:
+        """Whether a part gives what is laid out in one way: a translation, or what turns round.
+
+        The matrix of a cross product is the opposite of its transpose.
+        """
         given = (node.value for node in nodes(tree) if isinstance(node, ast.Return) and node.value)
         seen = [self.observed.of(value) for value in given]
         values = [x for one in seen if one is not None for x in one.values]
-        return bool(values) and all(x.shape == (3, 3) and np.array_equal(x, -x.T) for x in values)
+        shape = values[0].shape if values else ()
+        if shape == (4, 4):
+            return all(x.shape == shape and np.array_equal(x[:3, :3], np.eye(3)) for x in values)
+        return shape == (3, 3) and all(x.shape == shape and np.array_equal(x, -x.T) for x in values)
 
     def _is_once(self, part: int, node: ast.expr) -> bool:
         """Whether it is a name of what is worked out before, and used here alone."""
@@ -288,6 +297,21 @@ class Grounds:
             return False
         known = (self.trial.space.get(name) for name in (one.id, other.id))
         return all(isinstance(x, int | float) for x in known) and unlike(one.id, other.id)
+
+    def _takes_another_centre(self, edit: ProgramEdit) -> bool:
+        """Whether a mass would be multiplied by the centre of another link: ``m2*lc1``."""
+        name = _label_of(edit.changes[0].new)
+        if edit.kind != "name" or stem(name) not in _CENTRES:
+            return False
+        products = (
+            node
+            for node in nodes(self.trial.trees[edit.part])
+            if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult)
+            if any(inner is edit.node for inner in nodes(node))
+        )
+        beside = {_label_of(one) for node in products for one in factors(node)}
+        masses = {_digits_of(one) for one in beside if stem(one) in _MASSES}
+        return bool(masses - {""}) and _digits_of(name) not in masses
 
     def _against_data(self, name: str) -> float:
         using = [k for k in self.trial.above[DATA] if name in names(self.trial.trees[k])]
@@ -473,6 +497,15 @@ _STEP = re.compile(r"(.*?)_?(\d)_?(\d)")
 """The name of what leads from one frame to another: ``T03``, ``R_1_2``."""
 
 
+def _label_of(node: Any) -> str:
+    """What a name, or an attribute, is called; of a word, itself."""
+    return node if isinstance(node, str) else str(getattr(node, "id", getattr(node, "attr", "")))
+
+
+def _digits_of(name: str) -> str:
+    return "".join(filter(str.isdigit, name))
+
+
 def _one_name(node: Any) -> list[str]:
     """The name that an expression is made of, beside functions; empty where there are others."""
     calls = [one.func for one in pieces(node) if isinstance(one, ast.Call)]
@@ -531,8 +564,9 @@ def _are_flags(seen: Seen | None) -> bool:
 
 
 def zeros_and_ones(value: Array) -> bool:
-    """Whether there is nothing else in a value, so that anything could be it."""
-    return all(x == 0 or abs(x) == 1 for x in value.ravel().tolist())
+    """Whether there is nothing else in a value, up to rounding, so that anything could be it."""
+    near = TOLERANCES.rounding_leaves
+    return all(min(abs(x), abs(abs(x) - 1)) <= near for x in value.ravel().tolist())
 
 
 def _factor(edit: ProgramEdit) -> float:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable, Iterator, Sequence
+from itertools import permutations
 
 import numpy as np
 from scipy.linalg import expm
@@ -117,6 +118,21 @@ def _of_angle(call: Call) -> Iterator[Array]:
             yield _pose(np.eye(3), x * axis)
 
 
+def _of_place(call: Call) -> Iterator[Array]:
+    """A translation, by a vector or by its coordinates."""
+    yield _pose(np.eye(3), np.hstack(call[0]))
+
+
+def _of_a_row(call: Call) -> Iterator[Array]:
+    """A row of a DH table, standard and modified, whatever its order (Craig, eq. 3.6)."""
+    x, z = _AXES[0], _AXES[2]
+    for a, alpha, d, theta in permutations(map(float, call[0])):
+        about = _pose(expm(theta * _cross(z)), d * z)
+        along = _pose(expm(alpha * _cross(x)), a * x)
+        yield about @ along
+        yield along @ about
+
+
 def _adjoint(call: Call) -> Iterator[Array]:
     """Of a pose (Lynch & Park, definition 3.20)."""
     turn, place = call[0][0][:3, :3], call[0][0][:3, 3]
@@ -175,6 +191,9 @@ _KNOWN: dict[tuple[tuple[Shape, ...], Shape], Known] = {
     (((),), (2, 2)): _of_angle,
     (((),), (3, 3)): _of_angle,
     (((),), (4, 4)): _of_angle,
+    (((3,),), (4, 4)): _of_place,
+    (((), (), ()), (4, 4)): _of_place,
+    (((), (), (), ()), (4, 4)): _of_a_row,
     (((4, 4),), (4, 4)): _inverse,
     (((4, 4),), (6, 6)): _adjoint,
     (((6,),), (6, 6)): _crossed_twists,

@@ -18,7 +18,7 @@ from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import called, copied, nodes, pieces
 from kinlab.doctor.changes import Case, table_of
 from kinlab.doctor.glossary.linkage import linkage_meanings
-from kinlab.doctor.glossary.textbook import Glossary, meanings
+from kinlab.doctor.glossary.textbook import Glossary, meanings, without_base
 from kinlab.doctor.program.grounds.dimensions import Dimensions
 from kinlab.doctor.program.grounds.evidence import Grounds
 from kinlab.doctor.program.grounds.suspects import suspects
@@ -135,16 +135,17 @@ class LineSearch:
         states = [
             {name: stack[k] for name, stack in case.arguments.items()} for k in self.asked.watched
         ]
-        self.known: list[Glossary] = []
+        self.things: list[list[Glossary]] = [[]]
         if isinstance(case.robot, FiveBar):
-            self.known = [linkage_meanings(case.robot, state) for state in states]
+            self.things = [[linkage_meanings(case.robot, state) for state in states]]
         elif table_of(case.robot) is not None:
-            self.known = [meanings(case.robot, state) for state in states]
+            arms = [case.robot, without_base(case.robot)]
+            self.things = [[meanings(x, state) for state in states] for x in arms if x is not None]
         self.observed = Observed(self.trial, self.asked.states)
         self.work = Work(self.asked, self.observed)
         self.heavy = self.work.of_all(self.work.first) > _HEAVY
         self.in_lanes = _HEAVY_WORK if self.heavy else _ALONE + _MORE_WORK
-        self.evidence = Grounds(self.trial, self.observed, self.known)
+        self.evidence = self._grounds()
         self.arms = other_arms_of(self.asked, self.observed, self.work)
         given, alike = [*case.arguments], case.quantity.name in _TORQUES
         self.dimensions = Dimensions(
@@ -152,6 +153,16 @@ class LineSearch:
         )
         self.suspected = suspects(self.trial, self.observed, self.known)
         self.suspected |= self.dimensions.apart
+
+    @property
+    def known(self) -> list[Glossary]:
+        """The textbook's things at the states at which the program is watched."""
+        return self.evidence.known
+
+    def _grounds(self) -> Grounds:
+        """What is right in the program, in the axes of the base in which more of it is."""
+        every = [Grounds(self.trial, self.observed, known) for known in self.things]
+        return max(every, key=lambda one: one.count(self.observed)) if len(every) > 1 else every[0]
 
     @property
     def written_out(self) -> bool:
@@ -183,7 +194,7 @@ class LineSearch:
         """Watches the program as it stands now: what is right in it may be more than before."""
         self.observed = Observed(self.trial, self.asked.states)
         self.arms = replace(self.arms, observed=self.observed)
-        self.evidence = Grounds(self.trial, self.observed, self.known)
+        self.evidence = self._grounds()
 
     def singles(self, below: float = np.inf) -> list[ProgramRepair]:
         """Single edits that make the program right, the likeliest first.

@@ -14,6 +14,7 @@ import numpy as np
 
 from kinlab.doctor.glossary.meaning import meaning_of
 from kinlab.doctor.program.edits.numbers.as_the_arm import of_table
+from kinlab.doctor.program.edits.numbers.mistyped import mistyped
 from kinlab.doctor.program.places import DATA, ProgramEdit, changed, row_of
 from kinlab.doctor.program.search.repair import LineSearch, ProgramRepair
 from kinlab.doctor.program.several.effects import Chosen, Effects, Way, effects_of
@@ -96,7 +97,8 @@ def beside_numbers(search: LineSearch) -> list[ProgramRepair]:
         return []
     with quietly():
         looking, tried = _Several(search.most), _Tried(search)
-        if any(tried.fits(way) for way in odd):
+        own = of_table(search.trial, search.observed, search.case.robot)
+        if any(tried.fits(way) for way in [*odd, *((edit,) for edit in own)]):
             return []
         for way in odd:
             with changed(search.trial, way):
@@ -310,24 +312,9 @@ def _beside(search: LineSearch, edits: Way, thorough: bool = False) -> LineSearc
 
 def _mistyped(search: LineSearch) -> list[Way]:
     """Numbers that are off beside the arm's table, as it has them: all of them, and each alone."""
-    own = of_table(search.trial, search.observed, search.case.robot)
-    odd = _apart([edit for edit in own if _is_mistyped(edit)])
+    odd = _apart([*mistyped(search.trial, search.observed, search.case.robot)])
     each: list[Way] = [(edit,) for edit in odd]
     return [tuple(odd), *each] if 1 < len(odd) <= _DEEPEST else each[:_ODD]
-
-
-def _is_mistyped(edit: ProgramEdit) -> bool:
-    """Whether numbers are others with a slip: two of a row exchanged, a sign, the point, digits."""
-    if edit.kind == "entries swapped":
-        return True
-    old, new = edit.numbers or (0.0, 0.0)
-    typed, meant = (f"{abs(x):.12g}".replace(".", "").strip("0") for x in (old, new))
-    if abs(old) == abs(new) or sorted(typed) == sorted(meant):
-        return bool(old)
-    short, long = sorted((typed, meant), key=len)
-    if len(short) == len(long) > 1:
-        return sum(map(str.__ne__, short, long)) == 1
-    return len(short) > 1 and any(long[:k] + long[k + 1 :] == short for k in range(len(long)))
 
 
 def _apart(edits: list[ProgramEdit]) -> list[ProgramEdit]:

@@ -104,6 +104,7 @@ class Witnesses:
         self.there = search.observed.values(len(search.asked.watched))
         self.places = [place for tree in search.trial.trees for place in _places(tree)]
         self.numbers = {(id(holder), field): n for n, (holder, field) in enumerate(self.places)}
+        self.inside = _inside(self.places)
 
     def steps(self, ways: Sequence[Way], most: int) -> list[FirstStep]:
         """Those that make statements right and spoil none, as many as some work allows.
@@ -132,7 +133,7 @@ class Witnesses:
                         after = self._right()
                 except NoProgramError:
                     continue
-                gained = min(_gained(before, after), _MANY)
+                gained = min(_gained(before, after, self.inside), _MANY)
                 some = 0 if gained else min(_gained_sometimes(before, after), _MANY)
                 if gained or some:
                     cost = sum(map(self.search.likely, way)) - _STATEMENT * (gained + some)
@@ -217,15 +218,35 @@ class Witnesses:
         return some is not None and bool((np.abs(some - value.ravel()).max(axis=1) <= near).any())
 
 
-def _gained(before: dict[int, Watched], after: dict[int, Watched]) -> int:
-    """How many statements an edit makes right; 0 where it spoils any."""
-    gained = 0
+def _gained(before: dict[int, Watched], after: dict[int, Watched], inside: dict[int, int]) -> int:
+    """How many statements an edit makes right; 0 where it spoils any.
+
+    An entry of a row that was right by accident is not spoiled where the whole becomes right.
+    """
+    gained = {n for n, now in after.items() if _is_gained(before.get(n, _NEVER), now)}
     for n, now in after.items():
-        old = before.get(n, _NEVER)
-        if old.good and now.good == 0:
+        if before.get(n, _NEVER).good and now.good == 0 and inside.get(n) not in gained:
             return 0
-        gained += (now.good or 0) > (old.good or 0) and now.count >= old.count > 0
-    return gained
+    return len(gained)
+
+
+def _is_gained(old: Watched, now: Watched) -> bool:
+    return (now.good or 0) > (old.good or 0) and now.count >= old.count > 0
+
+
+def _inside(places: Sequence[tuple[Any, Any]]) -> dict[int, int]:
+    """In which statement the entries of rows are, by their numbers."""
+    lists = {
+        id(one): n
+        for n, (holder, _field) in enumerate(places)
+        if isinstance(holder, ast.Assign | ast.Return) and holder.value is not None
+        for node in nodes(holder.value)
+        if isinstance(node, ast.List | ast.Tuple)
+        for one in [node.elts]
+    }
+    return {
+        n: lists[id(holder)] for n, (holder, _field) in enumerate(places) if id(holder) in lists
+    }
 
 
 def _gained_sometimes(before: dict[int, Watched], after: dict[int, Watched]) -> int:

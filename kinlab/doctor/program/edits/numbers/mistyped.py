@@ -1,0 +1,54 @@
+"""Numbers of a program that are the arm's with a slip of the pen.
+
+What is so near a number of the table's, and is in its place or none of the table's, is wrong
+whatever else is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from kinlab.doctor.program.edits.numbers.as_the_arm import of_table
+from kinlab.doctor.program.edits.numbers.data import numbers
+from kinlab.doctor.program.grounds.scaled import is_own, own_numbers
+from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.places import ProgramEdit
+from kinlab.doctor.program.trial import Trial
+
+_COST = 0.97
+"""Cost of the arm's number for one that is in no column of its table."""
+_DIGITS = 3
+"""Digits of a number that tell whose it is wherever it stands."""
+
+
+def mistyped(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEdit]:
+    """The arm's numbers for such as are typed wrong, of columns first."""
+    for edit in of_table(trial, observed, robot):
+        if edit.kind == "entries swapped" or (edit.numbers and is_slip(*edit.numbers)):
+            yield edit
+    for place in numbers(trial, observed):
+        value = place.value
+        if isinstance(value, float) and _is_strange(robot, value):
+            meant = {x for x in own_numbers(robot).tolist() if x * value > 0 and is_slip(value, x)}
+            if len(meant) == 1 and max(map(len, map(_digits, (value, *meant)))) >= _DIGITS:
+                yield place.edit(*meant, "number", _COST)
+
+
+def is_slip(typed: float, meant: float) -> bool:
+    """Whether a number is another with a slip: its sign, the point, digits exchanged, or one."""
+    old, new = _digits(typed), _digits(meant)
+    if abs(typed) == abs(meant) or sorted(old) == sorted(new):
+        return bool(typed)
+    short, long = sorted((old, new), key=len)
+    if len(short) == len(long) > 1:
+        return sum(map(str.__ne__, short, long)) == 1
+    return len(short) > 1 and any(long[:k] + long[k + 1 :] == short for k in range(len(long)))
+
+
+def _digits(value: float) -> str:
+    return f"{abs(value):.12g}".replace(".", "").strip("0")
+
+
+def _is_strange(robot: Any, value: float) -> bool:
+    return not (is_own(robot, value) or is_own(robot, -value))
