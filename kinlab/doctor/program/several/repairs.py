@@ -87,8 +87,8 @@ def several(search: LineSearch) -> list[ProgramRepair]:
         )
 
 
-def beside_numbers(search: LineSearch) -> list[ProgramRepair]:
-    """One or two edits beside numbers that are mistyped, where these alone do not do.
+def of_mistyped(search: LineSearch) -> list[ProgramRepair]:
+    """Numbers that are mistyped: these alone, or one or two edits more beside them.
 
     Beside the arm's table they are wrong whatever else is.
     """
@@ -97,8 +97,11 @@ def beside_numbers(search: LineSearch) -> list[ProgramRepair]:
         return []
     with quietly():
         looking, tried = _Several(search.most), _Tried(search)
+        alone = tried.of_ways([way for way in odd if len(way) == 1])
+        if alone:
+            return alone
         own = of_table(search.trial, search.observed, search.case.robot)
-        if any(tried.fits(way) for way in [*odd, *((edit,) for edit in own)]):
+        if any(tried.fits((edit,)) for edit in own):
             return []
         for way in odd:
             with changed(search.trial, way):

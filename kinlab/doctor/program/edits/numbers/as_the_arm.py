@@ -377,8 +377,8 @@ def _wrong(values: Sequence[float], columns: Sequence[Array]) -> Iterator[tuple[
 def _columns(table: DHTable, typed: Sequence[float]) -> list[Array]:
     """The columns of a table: its lengths, angles, masses, centres, moments of inertia, rotors.
 
-    Its angles in degrees, too, where one of those that are typed is no angle otherwise, and in
-    quarter turns where all are whole.
+    Its angles in degrees, too, where one of those that are typed is no angle otherwise, and its
+    twists in quarter turns where all are whole.
     """
     links = table.links
     plain = [[getattr(k, name) for k in links] for name in _PLAIN]
@@ -386,8 +386,8 @@ def _columns(table: DHTable, typed: Sequence[float]) -> list[Array]:
         degrees = np.round(np.degrees(plain[1:4:2]), _DECIMALS_OF_DEGREES)
         plain += degrees.tolist()
     elif all(x == round(x) for x in typed):
-        turns = np.array(plain[1:4:2], dtype=float) / (np.pi / 2)
-        plain += [x.tolist() for x in turns if np.array_equal(x, np.round(x))]
+        turns = np.array(plain[1], dtype=float) / (np.pi / 2)
+        plain += [turns.tolist()] if np.array_equal(turns, np.round(turns)) else []
     centres = np.array([k.com for k in links], dtype=float).T
     tensors = np.array([k.inertia for k in links], dtype=float)
     moments = [tensors[:, i, j] for i, j in combinations_with_replacement(range(3), 2)]
