@@ -247,7 +247,7 @@ def _means_the_arm_s(
     own = _number_of(case, name)
     if not own:
         return False
-    here = numbers_at(case)
+    here = _numbers_here(case)
     texts = (written, _defined_otherwise(written, slip))
     try:
         old, new = (one[entry.label].definition(name).values(here) for one in texts)
@@ -280,13 +280,19 @@ def _still_off(
     case: Case, off: list[AnswerEntry], written: dict[str, Written]
 ) -> list[AnswerEntry]:
     """The entries that are off all the same."""
-    here, table = numbers_at(case), table_of(case.robot)
-    size = len(next(iter(case.arguments.values())))
-    for name in vocabulary(table).others if table is not None else ():
-        here.setdefault(name, np.full(size, _number_of(case, name)))  # lc1 of a rod
+    here = _numbers_here(case)
     now = [(one, written[one.label].values(here)) for one in off]
     left = [replace(one, hand=hand) for one, hand in now]
     return [one for one in left if not one.agrees]
+
+
+def _numbers_here(case: Case) -> dict[str, Array]:
+    """What all names stand for at each state, shares of lengths too: lc1 of a rod."""
+    here, table = numbers_at(case), table_of(case.robot)
+    size = len(next(iter(case.arguments.values())))
+    for name in vocabulary(table).others if table is not None else ():
+        here.setdefault(name, np.full(size, _number_of(case, name)))
+    return here
 
 
 def _varied(found: list[Slip]) -> list[Slip]:

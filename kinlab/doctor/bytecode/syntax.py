@@ -82,6 +82,13 @@ def factors(node: ast.expr) -> list[ast.expr]:
     return [node]
 
 
+def beginning(node: ast.AST) -> ast.AST:
+    """Of an operation of operations the one that comes first, ``0.5*w`` of ``0.5*w @ I @ w``."""
+    while isinstance(node, ast.BinOp) and isinstance(node.left, ast.BinOp):
+        node = node.left
+    return node
+
+
 def copied(tree: Tree) -> Tree:
     """What :func:`copy.deepcopy` gives of a tree; what holds nothing stays."""
     other = type(tree)()

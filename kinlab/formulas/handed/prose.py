@@ -19,11 +19,6 @@ _AROUND = re.compile(r"\\(?:begin|end|label|tag|ref|color|textcolor|operatorname
 _COMMAND = re.compile(r"\\(?:[A-Za-z]+\*?|.)")
 MATHS = re.compile(r"\$\$[^$]*\$\$|\$[^$]*\$|\\\(.*?\\\)|\\\[.*?\\\]", re.DOTALL)
 """Formulas in LaTeX between signs that say so."""
-SCORE = re.compile(
-    r"[(\[（【]\s*\d+(?:[.,/]\d+)?\s*(?:points?|pts?\.?|marks?|Punkte?|Pkt\.?|分)\s*[)\]）】]",
-    re.IGNORECASE,
-)
-"""What an answer gives: ``(3 points)``."""
 _WHERE = re.compile(
     r"\b(?:where|in which|(?:with|mit)(?!\s+(?:respect|bezug))|wobei|dabei|hierbei|here)\b"
     r"|其中|式中|这里",
@@ -214,7 +209,6 @@ def left_over(text: str, found: Iterable[tuple[str, str]], names: Iterable[str])
 @lru_cache(maxsize=64)
 def _proses(text: str) -> tuple[tuple[str, bool], ...]:
     """The pieces of a text in which words may stand, and whether letters may be products there."""
-    text = SCORE.sub(" ", text)
     left = text.partition("=")[0] if "=" in text else ""
     below = " ".join(_FONT.sub(r" \1 ", one[0].lstrip("_")) for one in _BELOW.finditer(left))
     said = [(re.sub(r"[{}\\]", " ", below), False)]

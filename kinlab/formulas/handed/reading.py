@@ -18,6 +18,11 @@ _ALONE = re.compile(
     r"(?:p_?)?[xyz]|[VUPTKL]|phi|det\w*|E_?[pk]|\w*energy|lagrangian|[\w,\[\]]*[\d\]]"
 )
 """Entries that are one number."""
+_SCORE = re.compile(
+    r"[(\[（【]\s*\d+(?:[.,/]\d+)?\s*(?:points?|pts?\.?|marks?|Punkte?|Pkt\.?|分)\s*[)\]）】]",
+    re.IGNORECASE,
+)
+"""What an answer gives: ``(3 points)``."""
 _GAP = re.compile(r"\s{12,}")
 
 
@@ -38,6 +43,7 @@ def as_formula(text: str, entry: str, place: str) -> tuple[str, str, list[tuple[
         ExpressionError: what can be read in two ways.
     """
     text = _GAP.sub(lambda gap: "\n" if "\n" in gap[0] else " ", plain_letters(text, place))
+    text = _SCORE.sub(" ", text)
     doubts = doubtful(text, entry)
     text, marks = without_marks(siciliano_s_letters(text))
     text = without_code(text, bool(_ALONE.fullmatch(entry)))

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 
-from kinlab.formulas.handed.prose import MATHS, SCORE, is_condition
+from kinlab.formulas.handed.prose import MATHS, is_condition
 from kinlab.formulas.handed.vocabulary import CHINESE, LATIN, is_listed, is_program
 from kinlab.formulas.signs.brackets import parts_at
 from kinlab.formulas.typed import begins_with, explains_another
@@ -79,7 +79,7 @@ def without_sentences(text: str, entry: str) -> str:
     """
     if _PROGRAM.search(text) or len(_WORD.findall(text)) > _MOST:
         return text
-    text = _DENOTES.sub(r"\1 = ", SCORE.sub(" ", text))
+    text = _DENOTES.sub(r"\1 = ", text)
     opened = _FONT.sub(lambda found: _opened(found, text), text)
     marked = _marked(opened)
     if _GAP not in marked and len(MATHS.findall(text)) < 2:

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import called, factors, names, nodes, pieces
+from kinlab.doctor.bytecode.syntax import beginning, called, factors, names, nodes, pieces
 from kinlab.doctor.glossary.meaning import as_vector
 from kinlab.doctor.glossary.textbook import Glossary, Row, Sense
 from kinlab.doctor.program.edits.scope.forms import summands
@@ -584,9 +584,8 @@ def _factor(edit: ProgramEdit) -> float:
 
 def _in_front(node: ast.expr) -> float:
     """The number that an expression begins with, 0.5 of ``0.5*w @ I @ w``; 0 without one."""
-    while isinstance(node, ast.BinOp):
-        node = node.left
-    value = node.value if isinstance(node, ast.Constant) else 0.0
+    first = beginning(node)
+    value = getattr(getattr(first, "left", first), "value", 0.0)
     return float(value) if isinstance(value, int | float) else 0.0
 
 

@@ -116,6 +116,8 @@ class Woven:
         asked = {ast.For: "iter", ast.If: "test"}.get(type(statement))
         if name != asked or not isinstance(new, ast.expr) or not may_run_apart(statement):
             return False
+        if isinstance(statement, ast.For) and {*names(statement.target)} & {*names(new)}:
+            return False  # from where the counter was left, which other lanes have had since
         self._ways[id(statement)].append((number, new))
         self._mark(statement)
         self._at.append((number, [(id(statement), name, None)]))

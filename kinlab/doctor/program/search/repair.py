@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import called, copied, nodes, pieces
+from kinlab.doctor.bytecode.syntax import beginning, called, copied, nodes, pieces
 from kinlab.doctor.changes import Case, table_of
 from kinlab.doctor.glossary.linkage import linkage_meanings
 from kinlab.doctor.glossary.textbook import Glossary, meanings, without_base
@@ -355,13 +355,11 @@ class LineSearch:
         edit, space = found[0].edits[-1], self.trial.space
         change = edit.changes[0]
         first = copied(change.new) if isinstance(change.new, ast.BinOp) else None
-        below = first
-        while isinstance(below, ast.BinOp) and isinstance(below.left, ast.BinOp):
-            below = below.left
+        below = beginning(first) if first is not None else None
         value = getattr(getattr(below, "left", None), "value", None)
         for name in (*self.trial.program.data, *self.trial.sets):
             own = space.get(name)
-            if type(own) is not float or own != value or below is None:
+            if type(own) is not float or own != value or not isinstance(below, ast.BinOp):
                 continue
             below.left = ast.Name(name, ast.Load())
             put = (replace(change, new=first),)

@@ -32,7 +32,7 @@ def mistyped(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
         if isinstance(value, float) and _is_strange(robot, value):
             meant = {x for x in own_numbers(robot).tolist() if x * value > 0 and is_slip(value, x)}
             if len(meant) == 1 and max(map(len, map(_digits, (value, *meant)))) >= _DIGITS:
-                yield place.edit(*meant, "number", _COST)
+                yield place.edit(meant.pop(), "number", _COST)
 
 
 def is_slip(typed: float, meant: float) -> bool:
