@@ -219,6 +219,9 @@ class Tolerances:
     rounding_leaves: float = 1e-13
     """Size in SI units of what rounding leaves of a zero: sums of products with cos(pi/2)."""
 
+    of_a_state_beside: float = 1e-4
+    """Relative difference of vectors and matrices at states that are a difference's step apart."""
+
     typed_endless: float = 1e-6
     """Relative difference up to which a typed number of many digits is pi, a third, a root of 2."""
 

@@ -386,6 +386,12 @@ def _from_the_axis(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     assert isinstance(here.parent, ast.Call)
     axis: ast.expr | None = here.parent.args[0]
     if isinstance(axis, ast.Name):
+        # of z2 it is o2, or p2
+        label = re.fullmatch(r"[A-Za-z_]+(\d+)", axis.id)
+        for name, shape in scope.shapes.items() if label else ():
+            if label and shape == _VECTOR and re.fullmatch(rf"[oOpP]_?{label[1]}", name):
+                own = ast.BinOp(here.node, ast.Sub(), ast.Name(name, ast.Load()))
+                yield here.instead(own, "missing term", 1.04)
         axis = _set_to(axis.id, here.above)
     if isinstance(axis, ast.Subscript) and isinstance(axis.slice, ast.Tuple):
         rows, column = axis.slice.elts[0], axis.slice.elts[-1]
@@ -402,7 +408,8 @@ def _from_the_axis(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
 
 def _set_to(name: str, above: Sequence[ast.AST]) -> ast.expr | None:
     """What a name was set to last in the blocks around a place."""
-    lines = [line for outer in above for line in getattr(outer, "body", ())]
+    bodies = [getattr(outer, "body", ()) for outer in above]  # a lambda's is no block
+    lines = [line for body in bodies if isinstance(body, list) for line in body]
     for line in reversed(lines if all(isinstance(x, ast.stmt) for x in lines) else []):
         if isinstance(line, ast.Assign) and len(line.targets) == 1:
             for target, value in paired(line.targets[0], line.value):

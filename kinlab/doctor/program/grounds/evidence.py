@@ -88,10 +88,14 @@ class Grounds:
         trial: the program.
         observed: what its expressions were at the states that it was watched at.
         known: the textbook's things at these states; none of a robot without a table.
+        stepping: whether it may take differences: its vectors are then those of states beside.
     """
 
-    def __init__(self, trial: Trial, observed: Observed, known: list[Glossary]) -> None:
+    def __init__(
+        self, trial: Trial, observed: Observed, known: list[Glossary], stepping: bool = False
+    ) -> None:
         self.trial, self.observed = trial, observed
+        self.near = TOLERANCES.of_a_state_beside if stepping else TOLERANCES.same_relation
         self.known = known
         self.right: set[int] = set()
         self.partly: set[int] = set()
@@ -454,7 +458,8 @@ class Grounds:
             rows, gap = known.gaps(value)
             if not rows:
                 return None
-            here = gap <= TOLERANCES.same_relation * float(np.max(np.abs(value)))
+            near = self.near if value.size > 1 else TOLERANCES.same_relation
+            here = gap <= near * float(np.max(np.abs(value)))
             same = here if same is None else same & here
         for k in np.flatnonzero(same) if same is not None else ():
             if rows[int(k)][1].what not in _OWN:

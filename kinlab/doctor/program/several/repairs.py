@@ -82,7 +82,7 @@ def several(search: LineSearch) -> list[ProgramRepair]:
     """
     with quietly():
         looking = _Several(_SHARE * search.most // 10)
-        return looking.of_one_line(
+        return looking.of_fewer(
             search, [_reduced(repair, search) for repair in looking.found(search)]
         )
 
@@ -210,7 +210,7 @@ class _Several:
 
     @staticmethod
     def _one_more(
-        search: LineSearch, ways: list[Way], alone: int
+        search: LineSearch, ways: list[Way], alone: int, beside_two: int = _BESIDE_TWO
     ) -> tuple[list[ProgramRepair], int]:
         """The one edit more with which all is right, beside those of one of some ways.
 
@@ -218,6 +218,7 @@ class _Several:
             search: the program.
             ways: edits that stand.
             alone: work for those that are run alone, beside which further ones are run in lanes.
+            beside_two: work for these beside two edits.
 
         Returns:
             What was found, and what it counts as work.
@@ -228,7 +229,7 @@ class _Several:
             with changed(search.trial, way):
                 here = _beside(search, way)
                 here.most = alone
-                here.in_lanes = _IN_LANES if len(way) < _DEEPEST else _BESIDE_TWO
+                here.in_lanes = min(_IN_LANES, beside_two) if len(way) < _DEEPEST else beside_two
                 found = here.singles()
                 done += min(here.work.done, _IN_LANES) // _WAYS
             if found:
@@ -245,15 +246,18 @@ class _Several:
                 return self._fewer(search, better)
         return found
 
-    def of_one_line(self, search: LineSearch, found: list[ProgramRepair]) -> list[ProgramRepair]:
-        """The same with one edit for two of one line, of three or more, where one does as well."""
+    def of_fewer(self, search: LineSearch, found: list[ProgramRepair]) -> list[ProgramRepair]:
+        """The same with one edit for two of three or more, where one does as well.
+
+        Two of one line have more work done for them.
+        """
         own = found[0].edits if found and len(found[0].edits) > _DEEPEST else ()
-        for two in combinations(own, 2):
-            if DATA not in (two[0].part, two[1].part) and row_of(two[0]) == row_of(two[1]):
-                rest = tuple(edit for edit in own if edit not in two)
-                better, _done = self._one_more(search, [rest], _ALONE)
-                if better:
-                    return better
+        for two in sorted(combinations(own, 2), key=lambda two: not _of_one_line(*two)):
+            rest = tuple(edit for edit in own if edit not in two)
+            lanes = _BESIDE_TWO if _of_one_line(*two) else 0
+            better, _done = self._one_more(search, [rest], _ALONE, lanes)
+            if better:
+                return better
         return found
 
     def _after(self, search: LineSearch, firsts: list[Way]) -> list[ProgramRepair]:
@@ -318,6 +322,10 @@ def _mistyped(search: LineSearch) -> list[Way]:
     odd = _apart([*mistyped(search.trial, search.observed, search.case.robot)])
     each: list[Way] = [(edit,) for edit in odd]
     return [tuple(odd), *each] if 1 < len(odd) <= _DEEPEST else each[:_ODD]
+
+
+def _of_one_line(one: ProgramEdit, other: ProgramEdit) -> bool:
+    return DATA not in (one.part, other.part) and row_of(one) == row_of(other)
 
 
 def _apart(edits: list[ProgramEdit]) -> list[ProgramEdit]:

@@ -199,8 +199,8 @@ class Witnesses:
             return None
         marks = self.marks.get(array.shape)
         if marks is not None:  # most are nothing known, which one number of each tells
-            weights = _WEIGHTS[: flat.size]
-            mark, wide = float(flat @ weights), 1e-6 * float(np.abs(flat) @ weights)
+            weights, near = _WEIGHTS[: flat.size], self.grounds.near
+            mark, wide = float(flat @ weights), 10 * near * float(np.abs(flat) @ weights)
             k = bisect_left(marks, mark - wide)
             if k == len(marks) or marks[k] > mark + wide:
                 return 0
