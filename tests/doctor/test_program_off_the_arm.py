@@ -13,8 +13,8 @@ import pytest
 from hand_programs import lines_named, repaired, with_slips, written
 
 import kinlab as kl
-from kinlab.doctor.program.edits.numbers.mistyped import is_slip
 from kinlab.doctor.program.grounds.evidence import zeros_and_ones
+from kinlab.doctor.program.search.mistyped import is_slip
 
 STATICS = """
 import numpy as np

@@ -14,8 +14,8 @@ import numpy as np
 
 from kinlab.doctor.glossary.meaning import meaning_of
 from kinlab.doctor.program.edits.numbers.as_the_arm import of_table
-from kinlab.doctor.program.edits.numbers.mistyped import mistyped
 from kinlab.doctor.program.places import DATA, ProgramEdit, changed, row_of
+from kinlab.doctor.program.search.mistyped import mistyped
 from kinlab.doctor.program.search.repair import LineSearch, ProgramRepair
 from kinlab.doctor.program.several.effects import Chosen, Effects, Way, effects_of
 from kinlab.doctor.program.several.in_order import InOrder
