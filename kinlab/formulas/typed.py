@@ -500,8 +500,9 @@ def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
     lines.sort(key=lambda line: (begins_with(line, entry, writing), "=" not in line))
     if lines and not begins_with(lines[-1], entry, writing) and "=" in lines[-1]:
         lines.sort(key=lambda line: not explains_another(line, lines))
-    own = [line.partition("=") for line in lines[:-1]]
-    if not own or any(line.count("=") != 1 for line in lines[:-1]):
+    # what gives the entry before is how the writer came to it: L = K - P
+    own = [line.partition("=") for line in lines[:-1] if not begins_with(line, entry, writing)]
+    if not lines[:-1] or any(line.count("=") != 1 for line in lines[:-1]):
         return {}, text
     left = lines[-1].partition("=")[0] if "=" in lines[-1] else ""
     if not all(_is_own_name(name.strip("& ")) for name, *_rest in own):

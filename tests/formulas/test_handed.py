@@ -299,6 +299,57 @@ def test_half_a_length_is_another_length(words):
     assert "'l1 表示杆长的一半'" in said
 
 
+def test_what_a_name_means_may_stand_behind_a_comma_alone():
+    for said in ("l1 is the length of link 1", "l1 为杆长", "m2 is the mass of link 2"):
+        assert right("planar2r_rods", "V", f"{RODS_V}, {said}").remarks == ()
+    for said in ("l1 is half the length of link 1", "l1 为杆长的一半", "I2 is about the pivot"):
+        refused("planar2r_rods", "V", f"{RODS_V}, {said}")
+
+
+@pytest.mark.parametrize(
+    ("entry", "way", "formula", "wrong"),
+    [
+        ("x", "x = a + b", X, ("c12", "s12")), ("V", "V = A", None, None),
+        ("tau2", "tau2 = A + B", None, None),
+    ],
+)  # fmt: skip
+def test_how_the_writer_came_to_the_entry_is_no_definition(entry, way, formula, wrong):
+    """``L = K - P`` and then ``L = ...``: its names, which nothing explains, were asked for."""
+    if formula is not None:
+        assert right("planar2r", entry, f"{way}\n{entry} = {formula}")
+        (cause,) = kl.diagnose(
+            "planar2r", entry, f"{way}\n{entry} = {formula.replace(*wrong)}"
+        ).causes
+        assert "s12 should be c12" in cause.sentence
+    else:
+        found = kl.diagnose("planar2r", entry, f"{way}\n{way.partition(' ')[0]} = m2*g*l2*s2")
+        assert not found.agrees
+
+
+def test_an_index_of_zero_on_the_left_says_how_it_is_counted():
+    text = "c1, c12 = np.cos(q[0]), np.cos(q[0] + q[1])\ntau[0] = (m1 + m2)*g*l1*c1 + m2*g*l2*c12"
+    right("planar2r", "g1", text.replace("tau[0]", "g[0]"))
+    assert kl.diagnose("planar2r", "inverse_dynamics[0]", text).causes
+
+
+def test_rates_may_be_multiplied_on_the_left():
+    rows = r"-m_2l_1l_2 s_2(2\dot q_1\dot q_2 + \dot q_2^2) \\ m_2l_1l_2 s_2\dot q_1^2"
+    right(
+        "planar2r",
+        "coriolis_torques",
+        rf"C(q,\dot q)\dot q = \begin{{bmatrix}} {rows} \end{{bmatrix}}",
+    )
+
+
+@pytest.mark.parametrize("end", [" where", "\nwhere"])
+def test_what_a_matrix_is_made_of_may_stand_on_a_line_of_its_own(end):
+    matrix = (
+        r"M(q) = \begin{pmatrix} a + 2b\cos q_2 & d + b\cos q_2 \\ d + b\cos q_2 & d \end{pmatrix}"
+    )
+    names = r"a = m_1l_1^2 + m_2(l_1^2 + l_2^2), b = m_2l_1l_2, d = m_2l_2^2"
+    right("planar2r", "mass_matrix", f"{matrix}{end} {names}")
+
+
 @pytest.mark.parametrize("score", ["(3 points)", "[2 Punkte]", "（5分）"])
 def test_what_an_answer_gives_is_no_part_of_it(score):
     assert right("planar2r", "g2", f"g2 = {G2} {score}").remarks == ()

@@ -23,6 +23,10 @@ _SCORE = re.compile(
     re.IGNORECASE,
 )
 """What an answer gives: ``(3 points)``."""
+_MEANS = re.compile(
+    r"(?<==)([^=]+?)[,，;；]\s*(?=\$?[lLmI]_?\{?c?\d\}?\$?\s*(?:为|是|表示|(?:is|are|denotes?|ist)\s))"
+)
+"""What explains a name behind a formula without saying where: ``x = ..., l1 is the length``."""
 _GAP = re.compile(r"\s{12,}")
 
 
@@ -43,7 +47,7 @@ def as_formula(text: str, entry: str, place: str) -> tuple[str, str, list[tuple[
         ExpressionError: what can be read in two ways.
     """
     text = _GAP.sub(lambda gap: "\n" if "\n" in gap[0] else " ", plain_letters(text, place))
-    text = _SCORE.sub(" ", text)
+    text = _MEANS.sub(r"\1, where ", _SCORE.sub(" ", text), count=1)
     doubts = doubtful(text, entry)
     text, marks = without_marks(siciliano_s_letters(text))
     text = without_code(text, bool(_ALONE.fullmatch(entry)))
