@@ -7,6 +7,7 @@ module            what it holds
 ``asked``         A program beside what it should answer
 ``chosen``        Which edits of a program are tried, and what they cost
 ``company``       Of repairs by name of one line that nothing tells apart, which has company
+``mistyped``      Numbers that are the arm's with a slip of the pen
 ``repair``        Single edits that make a program right, the likeliest first
 ``solved``        The single number with which a program is right: what it should be is solved for
 ``work``          What trying edits amounts to, in operations: the same on every machine

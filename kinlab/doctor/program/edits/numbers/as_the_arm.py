@@ -385,7 +385,7 @@ def _columns(table: DHTable, typed: Sequence[float]) -> list[Array]:
     if max(map(abs, typed), default=0.0) > 2 * np.pi:
         degrees = np.round(np.degrees(plain[1:4:2]), _DECIMALS_OF_DEGREES)
         plain += degrees.tolist()
-    elif all(x == round(x) for x in typed):
+    elif all(x == round(x) for x in typed) and np.count_nonzero(typed) >= _TOLD:
         turns = np.array(plain[1], dtype=float) / (np.pi / 2)
         plain += [turns.tolist()] if np.array_equal(turns, np.round(turns)) else []
     centres = np.array([k.com for k in links], dtype=float).T
