@@ -10,6 +10,7 @@ from typing import Any
 
 import nbformat
 from docutils import nodes
+from jupyter_cache import get_cache
 from myst_nb.core.read import is_myst_markdown_notebook, read_myst_markdown_notebook
 from sphinx.application import Sphinx
 
@@ -72,7 +73,16 @@ def write(app: Sphinx, error: Exception | None) -> None:
         nbformat.write(notebook, target)
 
 
+def one_store(app: Sphinx) -> None:
+    """Makes the store of executed pages before the processes that read pages begin.
+
+    Each makes it where it finds none, and of two that find none at once the second fails.
+    """
+    get_cache(app.config.nb_execution_cache_path).get_cache_limit()
+
+
 def setup(app: Sphinx) -> dict[str, Any]:
+    app.connect("builder-inited", one_store)
     app.connect("doctree-read", link)
     app.connect("env-merge-info", merge)
     app.connect("build-finished", write)

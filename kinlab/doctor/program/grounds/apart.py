@@ -306,7 +306,8 @@ class _Reader:
             every = [cell for cell in self.cells if cell.kind in kinds]
             if _among(some, one.value) and not self._is_of_another(kinds[0], link, one.value):
                 node = one.place.node if one.place.part == DATA else id(one.place.node)
-                self.fitting.add((node, one.place.place))
+                if one.value:  # a nought fits anything
+                    self.fitting.add((node, one.place.place))
                 alike.add(label[0])
             elif some and link is not None and len(label[2]) < 2 and not _among(every, one.value):
                 strange += [] if _among(kept, one.value) else [label]

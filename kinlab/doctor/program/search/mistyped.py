@@ -9,7 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from kinlab.doctor.program.edits.numbers.as_the_arm import of_table
+import numpy as np
+
+from kinlab.doctor.program.edits.numbers.as_the_arm import of_other_rows, of_table
 from kinlab.doctor.program.edits.numbers.data import numbers
 from kinlab.doctor.program.grounds.scaled import is_own, own_numbers
 from kinlab.doctor.program.observed import Observed
@@ -20,6 +22,8 @@ _COST = 0.97
 """Cost of the arm's number for one that is in no column of its table."""
 _DIGITS = 3
 """Digits of a number that tell whose it is wherever it stands."""
+_POINT = 1.5
+"""Powers of ten by which a point is put wrong; 1 for 0.001 is another number."""
 
 
 def mistyped(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEdit]:
@@ -27,6 +31,7 @@ def mistyped(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
     for edit in of_table(trial, observed, robot):
         if edit.kind == "entries swapped" or (edit.numbers and is_slip(*edit.numbers)):
             yield edit
+    yield from of_other_rows(trial, observed, robot)
     for place in numbers(trial, observed):
         value = place.value
         if isinstance(value, float) and _is_strange(robot, value):
@@ -37,9 +42,11 @@ def mistyped(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
 
 def is_slip(typed: float, meant: float) -> bool:
     """Whether a number is another with a slip: its sign, the point, digits exchanged, or one."""
+    if not (typed and meant) or abs(np.log10(abs(typed / meant))) > _POINT:
+        return False
     old, new = _digits(typed), _digits(meant)
     if abs(typed) == abs(meant) or sorted(old) == sorted(new):
-        return bool(typed)
+        return True
     short, long = sorted((old, new), key=len)
     if len(short) == len(long) > 1:
         return sum(map(str.__ne__, short, long)) == 1
@@ -47,7 +54,7 @@ def is_slip(typed: float, meant: float) -> bool:
 
 
 def _digits(value: float) -> str:
-    return f"{abs(value):.12g}".replace(".", "").strip("0")
+    return f"{abs(value):.11e}".partition("e")[0].replace(".", "").rstrip("0")
 
 
 def _is_strange(robot: Any, value: float) -> bool:

@@ -28,6 +28,8 @@ _ROWS = 4
 """Rows that several columns of the table may make of one."""
 _TOLD, _MOVING = 3, 2
 """Numbers of a column that tell which of the table's it is; how many may be no numbers."""
+_APART = 2
+"""Numbers other than nought of a column that is right but for one."""
 _TOGETHER = 0.01
 """What several numbers of a row cost more than one, which may do alone."""
 _PLAIN = ("a", "alpha", "d", "theta", "mass", "armature")
@@ -70,6 +72,24 @@ def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
             row = _row(k, some, whole)
             yield replace(row, cost=row.cost + _TOGETHER)
         yield from (cell.edit(right) for found in cells.values() for cell, right in found)
+
+
+def of_other_rows(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEdit]:
+    """Numbers of the row above, or below, in columns that are the table's otherwise."""
+    table = table_of(robot)
+    for found in _columns_of(trial, observed).values() if table is not None else ():
+        if table is None or sorted(found) != [*range(table.n)]:
+            continue
+        values = [found[k].value for k in range(table.n)]
+        for column in _columns(table, values):
+            off = [k for k, x in enumerate(values) if not _same(float(column[k]), x)]
+            right = {float(x) for k, x in enumerate(column) if x and k not in off}
+            if len(off) == 1 and values[off[0]] and len(right) >= _APART:
+                (k,) = off
+                if any(
+                    _same(values[k], float(x)) for x in (*column[k - 1 : k], *column[k + 1 :][:1])
+                ):
+                    yield found[k].edit(float(column[k]))
 
 
 def _ends(trial: Trial, table: DHTable) -> Iterator[ProgramEdit]:
@@ -377,18 +397,19 @@ def _wrong(values: Sequence[float], columns: Sequence[Array]) -> Iterator[tuple[
 def _columns(table: DHTable, typed: Sequence[float]) -> list[Array]:
     """The columns of a table: its lengths, angles, masses, centres, moments of inertia, rotors.
 
-    Its angles in degrees, too, where one of those that are typed is no angle otherwise, and its
-    twists in quarter turns where all are whole.
+    Where one of those that are typed is no angle in radians, its angles in degrees, too, and its
+    lengths and masses by the thousandth; its twists in quarter turns where all are whole.
     """
     links = table.links
     plain = [[getattr(k, name) for k in links] for name in _PLAIN]
+    centres = np.array([k.com for k in links], dtype=float).T
     if max(map(abs, typed), default=0.0) > 2 * np.pi:
-        degrees = np.round(np.degrees(plain[1:4:2]), _DECIMALS_OF_DEGREES)
-        plain += degrees.tolist()
+        degrees = np.degrees(plain[1:4:2])
+        thousandths = 1000 * np.array([plain[0], plain[2], plain[4], *centres])
+        plain += np.round([*degrees, *thousandths], _DECIMALS_OF_DEGREES).tolist()
     elif all(x == round(x) for x in typed) and np.count_nonzero(typed) >= _TOLD:
         turns = np.array(plain[1], dtype=float) / (np.pi / 2)
         plain += [turns.tolist()] if np.array_equal(turns, np.round(turns)) else []
-    centres = np.array([k.com for k in links], dtype=float).T
     tensors = np.array([k.inertia for k in links], dtype=float)
     moments = [tensors[:, i, j] for i, j in combinations_with_replacement(range(3), 2)]
     return [np.array(column, dtype=float) for column in (*plain, *centres, *moments)]
