@@ -57,6 +57,8 @@ _AS_THERE = 0.99
 """Cost of a sum for one of its terms, where another link has that sum."""
 _BESIDE_A_PART = 1.08
 """What it is to forget all of one beside a part of another: ``m2/2 + m3``."""
+_TYPED = 0.14
+"""What it costs more to transpose numbers that are typed: they would be typed so."""
 _AS_GIVEN = 0.02
 """What it is likelier of what a line only takes over: ``n = wrench[3:]``."""
 _DIVIDED = 1.07
@@ -237,6 +239,13 @@ def _instead_of_zero(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
             yield here.instead(chains.opposite(copied(piece)), "missing term", _ENTRY)
 
 
+def _is_typed(node: ast.expr) -> bool:
+    """Whether it is an array of numbers that are typed."""
+    given = node.args[:1] if isinstance(node, ast.Call) and called(node) == "array" else []
+    known = ast.List | ast.Tuple | ast.Constant | ast.UnaryOp | ast.unaryop | ast.Load
+    return bool(given) and all(isinstance(one, known) for one in nodes(given[0]))
+
+
 def _leftmost(node: ast.expr) -> ast.expr:
     """What a product begins with, where its sign stands: ``-a`` of ``-a*b``."""
     while isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult | ast.Div | ast.MatMult):
@@ -252,7 +261,7 @@ def _matrices(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         passed = passed or isinstance(node, ast.Name)
         given = isinstance(here.parent, ast.Return) and passed
         whole = isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub)
-        cost = 1.04 + _GIVEN * (given or whole)
+        cost = 1.04 + _GIVEN * (given or whole) + _TYPED * _is_typed(node)
         yield here.instead(ast.Attribute(node, "T", ast.Load()), "transposed", cost)
     if isinstance(here.parent, ast.Subscript) and here.field == "value" and len(shape) > 2:
         return
@@ -520,7 +529,7 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
         inside = turned and isinstance(piece, ast.BinOp) and isinstance(piece.op, ast.Mult)
         if text == own or not (whole or named or one or inside or isinstance(piece, ast.Attribute)):
             continue
-        if isinstance(piece, ast.List | ast.Tuple):
+        if isinstance(piece, ast.List | ast.Tuple) or (_is_typed(piece) and _is_typed(node)):
             continue  # what an array is made of is no term of it
         used = not isinstance(piece, ast.BinOp) and scope.dear(piece)
         known = {text, own} <= scope.constants

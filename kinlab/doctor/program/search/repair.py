@@ -325,24 +325,30 @@ class LineSearch:
         best = found[0].edits[-1]
         likeliest = self.likely(best)
         lines: dict[Any, ProgramRepair] = {}
+        others: dict[Any, ProgramRepair] = {}
         for repair in found:
             edit = repair.edits[-1]
-            if edit.part == DATA:
+            cost = self.likely(edit)
+            if edit.part == DATA or cost > likeliest + _BESIDE:
                 continue
-            if self.likely(edit) <= likeliest + _ALIKE:
-                lines.setdefault(row_of(edit), repair)
-            elif self.likely(edit) <= likeliest + _BESIDE and _more_than(best, edit):
-                lines.setdefault((row_of(edit), edit.kind), repair)
+            row, near = row_of(edit), cost <= likeliest + _ALIKE
+            if row not in lines and near:
+                lines[row] = repair
+            elif near or _more_than(best, edit):
+                others.setdefault((row, edit.kind), repair)
+        lines |= others
         if len(lines) < 2:
             return found
         rights = {id(one): self.left_right(one.edits[-1:]) for one in [*lines.values()][:_RIVALS]}
         most = max(rights.values())
         ahead = [one for one in lines.values() if rights.get(id(one)) == most]
         first = ahead[0]
+        row = row_of(first.edits[-1])
         least = self.likely(first.edits[-1]) + _SAME
         same = [
             one
             for one in ahead
+            if one is first or row_of(one.edits[-1]) != row
             if abs(one.cost - first.cost) <= _SAME and self.likely(one.edits[-1]) <= least
         ]
         rivals = [one for one in same[1:2] if not _add_the_same(first.edits[-1], one.edits[-1])]

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from itertools import permutations
 from typing import Any
 
-from kinlab.doctor.bytecode.syntax import copied, nodes
+from kinlab.doctor.bytecode.syntax import copied, nodes, text_of
 from kinlab.doctor.program.edits.scope.forms import statement_of
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.rows import swapped_in
@@ -67,13 +67,20 @@ def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
                 yield here.within(holder, field, ast.Name(name, ast.Load()), "index", cost)
         elif not isinstance(key, ast.Constant | ast.Slice):
             for text, index in beside.items():
-                if text not in _near(key):
+                if text not in _near(key) and not is_of_three(here, text):
                     yield here.within(holder, field, copied(index), "index", 1.08)
     _holder, _field, key = keys[0]
     single = len(keys) == 1 and not isinstance(node.slice, ast.Tuple)
     if single and shape is not None and len(shape) == 2 and not isinstance(key, ast.Slice):
         column = ast.Tuple([ast.Slice(None, None, None), key], ast.Load())
         yield here.within(node, "slice", column, "transposed", 1.15)
+
+
+def is_of_three(here: Here, other: str) -> bool:
+    """Whether it stands in ``D[i, j, k]``, or is one of its indices, and another is the other."""
+    chain = [one for one in (*here.above, here.node) if isinstance(one, ast.Subscript)]
+    keys = {text_of(key) for one in chain for *_place, key in keys_of(one)}
+    return len(keys) >= _THREE and other in keys
 
 
 def _other_slices(here: Here) -> Iterator[ProgramEdit]:

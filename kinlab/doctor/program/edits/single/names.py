@@ -10,6 +10,7 @@ from kinlab.doctor.program.edits.scope.forms import Turned, statement_of
 from kinlab.doctor.program.edits.scope.functions import PI
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.constants import OF_RODS
+from kinlab.doctor.program.edits.single.entries import is_of_three
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import Here, ProgramEdit
 
@@ -32,7 +33,7 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
         return
     if index:
         for other in scope.whole:
-            if other != node.id:
+            if other != node.id and not is_of_three(here, other):
                 yield here.instead(ast.Name(other, ast.Load()), "index", 1.12)
         return
     if node.id in scope.arcs and scope.has_numpy:
@@ -91,8 +92,11 @@ def _masses_beside(here: Here) -> list[str]:
 
 
 def _in_a_rods_moment(here: Here) -> bool:
-    """Whether it stands in ``m*l**2/12`` or in ``m*l**2/3``."""
-    divided = (one for one in here.above if isinstance(one, ast.BinOp))
+    """Whether it stands in ``m*l**2/12`` or in ``m*l**2/3``, or is gone through for that."""
+    divided = [one for one in here.above if isinstance(one, ast.BinOp)]
+    for one in here.above:
+        if isinstance(one, ast.ListComp | ast.GeneratorExp) and isinstance(one.elt, ast.BinOp):
+            divided.append(one.elt)
     below = (one.right for one in divided if isinstance(one.op, ast.Div))
     return any(isinstance(one, ast.Constant) and one.value in OF_RODS for one in below)
 

@@ -26,6 +26,8 @@ _SLIDE = 1.08
 """Cost of a slide's column for a hinge's."""
 _ONES = 1.14
 """Cost of ones for a row with zeros."""
+_TURNED = 1.05
+"""Cost of a turn the other way for one about an axis."""
 _LIKE_ANOTHER = 1.06
 """Cost of an entry that is made as another one of its row is."""
 _PRODUCTS = 1.08
@@ -54,9 +56,12 @@ def of_sequence(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
     slid = _as_of_a_slide(elements)
     if slid:
         yield here.within(here.node, "elts", slid, "kind of joint", _SLIDE)
-    if {getattr(one, "value", None) for one in elements} == {0, 1}:  # all joints turn the tool
-        ones = [ast.Constant(1) for _one in elements]
-        yield here.within(here.node, "elts", ones, "number", _ONES)
+    flags = [getattr(one, "value", None) for one in elements]
+    if {*flags} == {0, 1}:  # all joints turn the tool, or all before a link
+        own = len(flags) - flags[::-1].index(1)
+        for count in sorted({own, len(flags)}):
+            ones = [ast.Constant(1) if k < count else x for k, x in enumerate(elements)]
+            yield here.within(here.node, "elts", ones, "number", _ONES)
     if len(elements) > _PAIR and all(isinstance(one, _NUMBERS) for one in elements):
         for moved in moved_on(elements):
             yield here.within(here.node, "elts", moved, "shifted", 1.13)
@@ -216,8 +221,19 @@ def _across(here: Here, rows: Sequence[ast.expr]) -> Iterator[ProgramEdit]:
     if len(entries) == len(rows) > 1 and all(len(one) == len(rows) for one in entries):
         columns = [ast.List([*one], ast.Load()) for one in zip(*entries, strict=True)]
         if ast.dump(ast.List([*columns])) != ast.dump(ast.List([*rows])):
-            cost = 1.12 if len(rows) == _PAIR else 1.3
+            cost = _TURNED if _is_turn(entries) else 1.12 if len(rows) == _PAIR else 1.3
             yield here.within(here.node, "elts", columns, "transposed", cost)
+
+
+def _is_turn(entries: Sequence[Sequence[ast.expr]]) -> bool:
+    """Whether entries turn about one axis: a sine, and across from it its opposite."""
+    size = range(len(entries))
+    off = [(i, k) for i in size for k in size if i < k and getattr(entries[i][k], "value", 1) != 0]
+    across = [(entries[i][k], entries[k][i]) for i, k in off]
+    return len(across) == 1 and any(
+        ast.dump(_opposite(one)) == ast.dump(other) and not isinstance(other, ast.Constant)
+        for one, other in (*across, across[0][::-1])
+    )
 
 
 def _opposite(node: ast.expr) -> ast.expr:
