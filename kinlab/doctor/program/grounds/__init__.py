@@ -15,5 +15,6 @@ module            what it holds
 ``scaled``        Another arm, on which what is one by the numbers alone is two things
 ``suspects``      Statements that are wrong by what they are made of
 ``terms``         Vectors and matrices that a sum may lack, of the sum's dimension
+``unread``        Terms with what a program holds and never reads
 ================  =================================================================================
 """

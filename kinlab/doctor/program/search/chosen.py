@@ -23,6 +23,7 @@ from kinlab.doctor.program.grounds.lacking import lacking_terms
 from kinlab.doctor.program.grounds.products import missing_products
 from kinlab.doctor.program.grounds.scaled import is_own, own_rows
 from kinlab.doctor.program.grounds.terms import missing_terms
+from kinlab.doctor.program.grounds.unread import unread_terms
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit
 from kinlab.doctor.program.search.asked import Asked
@@ -60,6 +61,7 @@ def chosen(
     every += of_own_numbers(trial, observed, robot, *map(asked.watched_of, ("q", "a")))
     every += missing_products(trial, observed, scopes, dimensions)
     every += missing_terms(trial, observed, scopes, dimensions)
+    every += unread_terms(trial, observed, scopes, dimensions)
     every += lacking_terms(trial, observed, scopes, known)
     sure = as_it_is(trial, observed, robot)
     mirrors, rows = _mirroring(asked, observed), own_rows(robot)
