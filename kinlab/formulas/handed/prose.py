@@ -116,10 +116,11 @@ def doubtful(text: str, entry: str) -> list[tuple[str, str]]:
 def explained_by(text: str) -> str:
     """Words behind ``where`` that are in no list of what names mean anyway; mostly empty."""
     found = []
+    shares = [("", clause) for clause in _shares(text, own=True)]
     for prose, typeset in _proses(text):
         _front, behind = _cut(prose)
         if behind:
-            found += [("", clause) for clause in _shares(text)]
+            found += shares
             behind = _INERTIA.sub(" ", behind)
             found += [one for one in _of(behind, BEHIND, typeset) if not _used(one[0], text)]
             if _ANGLE.search(behind) and _LINK.search(behind) and not _JOINT.search(behind):
@@ -127,12 +128,17 @@ def explained_by(text: str) -> str:
     return found[0][1] if found else ""
 
 
-def _shares(text: str) -> list[str]:
-    """What makes a size of the robot's another one: ``l1 and l2 denote half the lengths``."""
+def _shares(text: str, own: bool = False) -> list[str]:
+    """What makes a size of the robot's another one: ``l1 and l2 denote half the lengths``.
+
+    Args:
+        text: as typed.
+        own: only of what is no share itself: ``lc1 is half of l1`` is true of a rod.
+    """
     found = []
     for clause in _CLAUSE.split(_WHERE.sub(";", _flat(text))):
         name = _OWN.search(clause)
-        if name and name["own"] and _SHARE.search(clause):
+        if name and (name["own"] or not own) and _SHARE.search(clause):
             found.append(clause.strip()[:_MOST])
     return found
 

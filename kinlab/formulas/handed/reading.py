@@ -8,6 +8,7 @@ from kinlab.formulas.handed.code import without_code
 from kinlab.formulas.handed.columns import of_column
 from kinlab.formulas.handed.constants import without_constant
 from kinlab.formulas.handed.dressed import undressed
+from kinlab.formulas.handed.glossed import without_glosses
 from kinlab.formulas.handed.letters import plain_letters, siciliano_s_letters, without_marks
 from kinlab.formulas.handed.prose import doubtful
 from kinlab.formulas.handed.rates import plain_rates
@@ -24,7 +25,7 @@ _SCORE = re.compile(
 )
 """What an answer gives: ``(3 points)``."""
 _MEANS = re.compile(
-    r"(?<==)([^=]+?)[,，;；]\s*(?=\$?[lLmI]_?\{?c?\d\}?\$?\s*(?:为|是|表示|(?:is|are|denotes?|ist)\s))"
+    r"(?<==)([^=]+?)[,，;；]\s*(?=\$?[lLmI]_?\{?c?\d\}?\$?\s*(?:为|是|表示|(?:is|are|denotes?|being|ist)\s))"
 )
 """What explains a name behind a formula without saying where: ``x = ..., l1 is the length``."""
 _GAP = re.compile(r"\s{12,}")
@@ -47,7 +48,7 @@ def as_formula(text: str, entry: str, place: str) -> tuple[str, str, list[tuple[
         ExpressionError: what can be read in two ways.
     """
     text = _GAP.sub(lambda gap: "\n" if "\n" in gap[0] else " ", plain_letters(text, place))
-    text = _MEANS.sub(r"\1, where ", _SCORE.sub(" ", text), count=1)
+    text = _MEANS.sub(r"\1, where ", _SCORE.sub(" ", without_glosses(text)), count=1)
     doubts = doubtful(text, entry)
     text, marks = without_marks(siciliano_s_letters(text))
     text = without_code(text, bool(_ALONE.fullmatch(entry)))
