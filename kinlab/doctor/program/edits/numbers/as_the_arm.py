@@ -6,7 +6,7 @@ import ast
 from collections.abc import Callable, Container, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import combinations_with_replacement, islice, product
+from itertools import combinations, combinations_with_replacement, islice, product
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,7 @@ from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit, number, places
 from kinlab.doctor.program.trial import FieldChange, Trial
 from kinlab.model.dh import DHTable
+from kinlab.model.link import Convention
 from kinlab.symbolic.vocabulary import vocabulary
 from kinlab.tolerances import TOLERANCES
 
@@ -56,20 +57,25 @@ def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
         if not _same(cell.value, right):
             yield cell.edit(right)
     off: dict[tuple[Any, int], dict[Any, list[tuple[_Cell, float]]]] = {}
+    alone: set[tuple[_Cell, float]] = set()
     columns = _columns_of(trial, observed)
     for name, found in columns.items():
         rows = sorted(found)  # of a column with None for what turns or slides, those that are told
         if rows and rows[-1] < table.n and len(rows) >= max(_TOLD, table.n - _MOVING):
             values = [found[i].value for i in rows]
             told = [column[rows] for column in _columns(table, values)]
-            for at, right in dict.fromkeys(_wrong(values, told)):
+            for (at, right), count in _wrong(values, told).items():
                 k = rows[at]
                 off.setdefault((name[0], k), {}).setdefault(name, []).append((found[k], right))
+                alone |= {(found[k], right)} if count == 1 else set()
     for (whose, k), cells in off.items():
         whole = [found[k] for key, found in columns.items() if key[0] == whose and k in found]
-        several = [*islice(product(*cells.values()), _ROWS)] if len(cells) > 1 else []
-        for some in several:
-            row = _row(k, some, whole)
+        every = [one for found in cells.values() for one in found if one in alone]
+        pairs = (x for x in combinations(every, 2) if _same(x[0][1], x[1][0].value))
+        swapped = [x for x in pairs if _same(x[1][1], x[0][0].value)]
+        others = islice(product(*cells.values()), _ROWS) if len(cells) > 1 else ()
+        for some in (*swapped, *others):
+            row = _row(k, some, whole, alone.issuperset(some))
             yield replace(row, cost=row.cost + _TOGETHER)
         yield from (cell.edit(right) for found in cells.values() for cell, right in found)
 
@@ -219,13 +225,15 @@ class _Cell:
         )
 
 
-def _row(k: int, some: Sequence[tuple[_Cell, float]], whole: Sequence[_Cell]) -> ProgramEdit:
-    """Several numbers of a row."""
+def _row(
+    k: int, some: Sequence[tuple[_Cell, float]], whole: Sequence[_Cell], alone: bool
+) -> ProgramEdit:
+    """Several numbers of a row; exchanged, where all else of their columns is right."""
     first = some[0][0]
     put = {id(cell): right for cell, right in some}
     old = [cell.value for cell in whole]
     new = [put.get(id(cell), cell.value) for cell in whole]
-    kind = "entries swapped" if sorted(old) == sorted(new) else "number"
+    kind = "entries swapped" if alone and sorted(old) == sorted(new) else "number"
     if first.place is None:
         changes = [change for cell, right in some for change in cell.edit(right).changes]
         return ProgramEdit(first.part, tuple(changes), kind, _COST, first.node, of_the_arm=True)
@@ -381,27 +389,39 @@ def _cells(rows: list[Any], k: int, row: ast.expr) -> Iterator[tuple[Any, Any, A
             yield from (((key, j), inner.elts, j) for j in range(len(inner.elts)))
 
 
-def _wrong(values: Sequence[float], columns: Sequence[Array]) -> Iterator[tuple[int, float]]:
-    """The numbers that are not as in a column of which most others are, and are not all alike."""
+def _wrong(values: Sequence[float], columns: Sequence[Array]) -> dict[tuple[int, float], int]:
+    """The numbers that are not as in a column of which most others are, and are not all alike.
+
+    Each with how many of them the column has.
+    """
     alike = [[_same(float(x), y) for x, y in zip(c, values, strict=True)] for c in columns]
+    found: dict[tuple[int, float], int] = {}
     if len({*values}) > 1 and any(map(all, alike)):
-        return
+        return found
     for column, same in zip(columns, alike, strict=True):
         apart = {float(x) for x, good in zip(column, same, strict=True) if good}
+        off = [int(k) for k in np.flatnonzero(np.logical_not(same))]
         if 2 * sum(same) >= len(same):
-            for k in np.flatnonzero(np.logical_not(same)):
+            for k in off:
                 if column[k] or len(apart) > 1:
-                    yield int(k), float(column[k])
+                    found.setdefault((k, float(column[k])), len(off))
+    return found
 
 
 def _columns(table: DHTable, typed: Sequence[float]) -> list[Array]:
     """The columns of a table: its lengths, angles, masses, centres, moments of inertia, rotors.
 
-    Where one of those that are typed is no angle in radians, its angles in degrees, too, and its
+    Its lengths and twists also as the other convention has them, a row further on or back. Where
+    one of those that are typed is no angle in radians, its angles in degrees, too, and its
     lengths and masses by the thousandth; its twists in quarter turns where all are whole.
     """
     links = table.links
     plain = [[getattr(k, name) for k in links] for name in _PLAIN]
+    if table.convention is Convention.STANDARD:
+        plain += [[0.0, *column[:-1]] for column in plain[:2]]
+    else:
+        ends = float(np.asarray(table.tool)[0, 3]), 0.0
+        plain += [[*column[1:], end] for column, end in zip(plain[:2], ends, strict=True)]
     centres = np.array([k.com for k in links], dtype=float).T
     if max(map(abs, typed), default=0.0) > 2 * np.pi:
         degrees = np.degrees(plain[1:4:2])
