@@ -346,7 +346,9 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
     power = isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.Pow)
     named = isinstance(node, ast.Name | ast.Subscript)
     beside = _factors_beside(here) if term else set()
-    if isinstance(node, ENTRIES) and not power and (operated or term):
+    dot = isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult)  # (v @ u)**2
+    dot = dot or (isinstance(node, ast.Call) and called(node) in ("dot", "norm"))
+    if (isinstance(node, ENTRIES) or dot) and not power and (operated or term):
         yield here.instead(ast.BinOp(node, ast.Pow(), number(2)), "power", 1.08)
     yield from _squares_and_products(here, scope)
     if term:
