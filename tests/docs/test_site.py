@@ -141,7 +141,9 @@ def test_note_page_shows_each_formula_with_its_verdict():
 
 def test_the_store_of_executed_pages_is_made_once(tmp_path):
     # each process that reads pages would make it: the second of two at once fails
-    app = SimpleNamespace(config=SimpleNamespace(nb_execution_cache_path=str(tmp_path / "executed")))
+    app = SimpleNamespace(
+        config=SimpleNamespace(nb_execution_cache_path=str(tmp_path / "executed"))
+    )
     notebooks.one_store(app)
     assert (tmp_path / "executed" / "global.db").stat().st_size > 0
     notebooks.one_store(app)

@@ -191,7 +191,8 @@ def test_the_centre_is_that_of_the_mass_beside_it() -> None:
     [
         (0.136941, 0.163941, True), (0.15050, 0.15005, True), (0.203, 0.0203, True), (-0.4, 0.4, True),
         (0.0, 0.4318, False), (-1.0, 0.07, False), (0.25, 0.5, False), (0.170, 0.107, True),
-        (0.3, 0.005, False), (0.4318, 0.15005, False),
+        (0.3, 0.005, False), (0.4318, 0.15005, False), (1.0, 0.001, False), (413.8, 0.4128, False),
+        (413.8, 431.8, True), (1e-05, 4e-05, False),
     ],
 )  # fmt: skip
 def test_which_numbers_are_a_slip_of_the_pen(typed, meant, slip) -> None:

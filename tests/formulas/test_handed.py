@@ -193,6 +193,47 @@ def test_words_that_may_change_a_meaning_are_refused(text):
     refused("planar2r", "x", text)
 
 
+M22 = "I2 + m2*lc2^2"
+
+
+@pytest.mark.parametrize(
+    ("entry", "text"),
+    [
+        ("x", f"x = {X}, where q2 is the angle of link 2 relative to link 1"),
+        ("x", f"x = {X}, where l1 and l2 are the link lengths and q2 is the angle between link 1 and link 2"),
+        ("x", f"x = {X}，其中 θ2 是连杆2相对连杆1的转角"), ("M22", f"M22 = {M22}, with I2 about the centre of mass"),
+        ("M22", f"M22 = {M22}, mit I2 bezüglich des Schwerpunkts"),
+        ("M22", f"M22 = {M22} where $l_{{c2}}$ is the distance from joint 2 to the centre of mass of link 2"),
+        ("M22", f"M22 = {M22}, where lc2 is the distance of the center of mass of link 2 from joint 2."),
+    ],
+)  # fmt: skip
+def test_what_a_name_means_anyway_says_nothing(entry, text):
+    found = kl.diagnose("planar2r_rods", entry, text)
+    assert found.agrees
+    assert not found.remarks
+
+
+@pytest.mark.parametrize(
+    "clause",
+    [
+        "where q2 is the angle of link 2 relative to link 1 in degrees", "where q2 is the angle of link 2 relative to link 2",
+        "where q2 is the angle of link 2 relative to the base", "where q1 is the angle of link 1 relative to link 2",
+        "where l2 is the distance from joint 2 to the centre of mass of link 2",
+    ],
+)  # fmt: skip
+def test_what_it_means_with_another_number_is_refused(clause):
+    refused("planar2r", "x", f"x = {X}, {clause}")
+
+
+@pytest.mark.parametrize(
+    "clause", ["lc2 is half of l2", "where lc2 is half of l2", "where lc2 equals half of l2"]
+)
+def test_a_share_that_a_centre_s_name_is_said_to_be_is_told(clause):
+    """On this arm the centre is at the end of the link."""
+    found = kl.diagnose("planar2r", "M22", f"M22 = m2*lc2^2, {clause}")
+    assert any("lc2" in str(one) for one in found.remarks), str(found)
+
+
 def test_the_refused_words_are_said_with_the_remedy():
     text = f"x = {X}, where q1 is measured from the vertical"
     refused("planar2r", "x", text, r"measured from the vertical.*leave it out")

@@ -27,8 +27,7 @@ a further factor adds."""
 _AT_HAND, _MOST = 24, 40
 """Numbers, or vectors, by which it may be multiplied; terms of one place."""
 _ACCELERATIONS = re.compile(
-    r"(?:q|th|theta|ph|phi|ps|psi|al|b|w|om|omega)\w*dd|\w*ddot|dd\w+|acc|alpha|a|qdd|al|dw|wd"
-    r"|domega|omegad",
+    r"\w*dd\d*|\w*ddot\d*|dd\w+|\w*acc\w*|\w*alpha\w*|a\d*|al\d*|dw\d*|wd\d*|domega|omegad|\w+pp",
     re.IGNORECASE,
 )
 _SET = ast.Assign | ast.AugAssign | ast.Return
@@ -168,6 +167,10 @@ def _products(
 ) -> Iterator[tuple[ast.expr, list[ast.expr]]]:
     """What is unread times a number, or a row; of a number also times both, each with these."""
     numbers, rows = ([*_worked_out(scope, size)][:_AT_HAND] for size in ((), shape))
+    lists = [(x, size) for size in scope.pieces if len(size) == 1 for x in _worked_out(scope, size)]
+    entries = _each(scope, [x for x in lists if _is_acceleration(x[0])])
+    told = {*map(text_of, numbers)}
+    numbers += [one for one, size in entries if size == () and text_of(one) not in told]
     moving = [*filter(_is_acceleration, numbers)]
     for entry, size in idle:
         if size == shape:
