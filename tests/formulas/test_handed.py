@@ -234,6 +234,21 @@ def test_a_share_that_a_centre_s_name_is_said_to_be_is_told(clause):
     assert any("lc2" in str(one) for one in found.remarks), str(found)
 
 
+@pytest.mark.parametrize(
+    "clause",
+    [
+        "I2 um das Gelenk", "wobei I2 bezüglich der Drehachse", "I2 about the joint", "其中 I2 为绕关节的转动惯量",
+        "with l1 and l2 in cm", "Längen in Millimetern", "长度单位为毫米",
+    ],
+)  # fmt: skip
+def test_another_point_and_other_units_are_not_passed_over(clause):
+    try:
+        found = kl.diagnose("planar2r_rods", "M22", f"M22 = {M22}, {clause}")
+    except kl.KinlabError:
+        return
+    assert found.remarks, str(found)
+
+
 def test_the_refused_words_are_said_with_the_remedy():
     text = f"x = {X}, where q1 is measured from the vertical"
     refused("planar2r", "x", text, r"measured from the vertical.*leave it out")

@@ -8,14 +8,13 @@ module          what it holds
 ``constants``   A free constant behind a potential
 ``dressed``     LaTeX as it is dressed for a page: boxes, arrows, colours, old commands
 ``equations``   Equations that give an entry otherwise than by its name alone, solved for it
-``glossed``     Clauses that say of a name what it means on every arm
 ``letters``     Letters and signs of word processors and web pages
 ``prose``       Which words beside a formula may change what it claims
 ``rates``       Rates by the names that programs of algebra give them
 ``reading``     All that is done to a formula as it is handed in, in the order in which it is done
 ``sentences``   The equations in a text with sentences
 ``units``       Units behind numbers and formulas
-``vocabulary``  Words that say nothing of what a formula claims
+``vocabulary``  Words, and clauses of names, that say nothing of what a formula claims
 ``words``       Words around a formula
 ==============  ===================================================================================
 """

@@ -77,10 +77,20 @@ _UP_TO = re.compile(
 )
 _ELSEWHERE = re.compile(
     r"\b(?:I_?\d|inertias?)\b[^.;=]{0,40}?\b(?:about|around|at) (?:the |its |their )?"
-    r"(?:joints?|pivots?|hinges?|ends?|axes|axis of rotation)\b",
+    r"(?:joints?|pivots?|hinges?|ends?|axes|axis of rotation)\b"
+    r"|\b(?:I_?\d|trägheitsmomente?s?)\b[^.;=]{0,40}?\b(?:um|bezüglich|bezogen auf)"
+    r" (?:das |des |den |die |der |dem )?(?:gelenke?s?|drehpunkte?s?|drehachse|lagers?|endes?)\b"
+    r"|(?:I_?\d|转动惯量)[^。；=]{0,20}?(?:绕|对|关于)(?:关节|铰链?|转轴|端点|端部)"
+    r"|(?:绕|对|关于)(?:关节|铰链?|转轴|端点|端部)的?转动惯量",
     re.IGNORECASE,
 )
 """Moments of inertia about another point than the robot's are."""
+_SCALED = re.compile(
+    r"\bin (?:mm|cm|dm|km|inch(?:es)?|feet|grams?|tonnes?|(?:milli|centi)met(?:re|er)s?"
+    r"|(?:milli|zenti)metern?|gramm)\b|毫米|厘米|英寸",
+    re.IGNORECASE,
+)
+"""Units in which the robot's numbers are not."""
 _SHARE = re.compile(
     r"\b(?:half|halves|twice|double[sd]?|third|quarter|total|combined|halb\w*|hälfte|doppel\w*|gesamt\w*)\b"
     r"|半|两倍|二倍|之和|总",
@@ -108,7 +118,7 @@ def doubtful(text: str, entry: str) -> list[tuple[str, str]]:
     for prose, typeset in _proses(text):
         front, _behind = _cut(_FRAME.sub(" ", prose))
         found += _of(front, entry, typeset) + _parts(front, entry)
-        for kind in (_UP_TO, _ELSEWHERE):
+        for kind in (_UP_TO, _ELSEWHERE, _SCALED):
             found += [(one[0], around(prose, *one.span())) for one in kind.finditer(prose)]
     return found + _conditions(text)
 

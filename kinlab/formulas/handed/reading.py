@@ -8,11 +8,11 @@ from kinlab.formulas.handed.code import without_code
 from kinlab.formulas.handed.columns import of_column
 from kinlab.formulas.handed.constants import without_constant
 from kinlab.formulas.handed.dressed import undressed
-from kinlab.formulas.handed.glossed import without_glosses
 from kinlab.formulas.handed.letters import plain_letters, siciliano_s_letters, without_marks
 from kinlab.formulas.handed.prose import doubtful
 from kinlab.formulas.handed.rates import plain_rates
 from kinlab.formulas.handed.units import without_units
+from kinlab.formulas.handed.vocabulary import without_glosses
 from kinlab.formulas.handed.words import without_words
 
 _ALONE = re.compile(
