@@ -6,7 +6,6 @@ import inspect
 import re
 import sys
 from collections import Counter
-from types import SimpleNamespace
 
 import pages
 import pytest
@@ -17,7 +16,6 @@ sys.path.insert(0, str(pages.DOCS / "_ext"))
 
 import command_pages
 import note_pages
-import notebooks
 import reference_pages
 from made_pages import write_if_changed
 
@@ -137,13 +135,3 @@ def test_note_page_shows_each_formula_with_its_verdict():
     assert not labels[0] & labels[1]  # one label names one place of the whole site
     assert other.count("**笔误") == len(wrong)
     assert not re.search(r"Misprint|Agrees|Largest", other)
-
-
-def test_the_store_of_executed_pages_is_made_once(tmp_path):
-    # each process that reads pages would make it: the second of two at once fails
-    app = SimpleNamespace(
-        config=SimpleNamespace(nb_execution_cache_path=str(tmp_path / "executed"))
-    )
-    notebooks.one_store(app)
-    assert (tmp_path / "executed" / "global.db").stat().st_size > 0
-    notebooks.one_store(app)
