@@ -523,9 +523,19 @@ def explains_another(line: str, lines: list[str]) -> bool:
         line: an equation.
         lines: all there are.
     """
-    name, *others = (re.sub(r"[_{}\\\s]", "", one) for one in (line.partition("=")[0], *lines))
+    name = _joined_up(line.partition("=")[0])
     pattern = re.compile(rf"(?<![A-Za-z]){re.escape(name)}(?!\d)")
-    return any(pattern.search(other.partition("=")[2]) for other in others)
+    rights = [other.partition("=")[2] for other in lines]
+    apart = [_joined_up(_COMMAND.sub(" +", right)) for right in rights]
+    return any(map(pattern.search, [*map(_joined_up, rights), *apart]))
+
+
+_COMMAND = re.compile(r"\\(?:(?:begin|end)\{\w+\*?\}|(?=[A-Za-z]))")
+
+
+def _joined_up(text: str) -> str:
+    """A text without blanks, braces and what stands below the line."""
+    return re.sub(r"[_{}\\\s]", "", text)
 
 
 _SQUARE = re.compile(r"(.*?)\s*(?:(?:\^|\*\*)\s*(?:2|\{\s*2\s*\})|²)")
@@ -795,6 +805,8 @@ _IN_BOOKS = (
     "V P U Ep potential potential_energy",
     "T K Ek kinetic kinetic_energy",
     "L lagrangian",
+    "T K E link_kinetic_energies",
+    "r rho fivebar_rod_length",
     "T A H fk",
     "J Jv planar_jacobian jacobian jacobian_tool jacobian_spatial",
     "tau u Q t inverse_dynamics inverse_dynamics_loaded lagrange_torques",
@@ -844,4 +856,6 @@ def _head_and_places(name: str) -> tuple[str, str]:
     head, places = found.groups()
     if "[" in name:
         places = "".join(str(int(k) + 1) for k in places.split(",") if k)
+    if head == "fivebar_equation" and len(places) == 2:  # A, B and C of a leg
+        return "abc"[int(places[1]) - 1 : int(places[1])], places[0]
     return head.lower(), places.replace(",", "")

@@ -48,11 +48,13 @@ _ORDER = {"first": 1, "second": 2, "third": 3, "fourth": 4, "ersten": 1, "zweite
 _ORDER |= {"一": 1, "二": 2, "三": 3, "四": 4}
 _PART = re.compile(
     r"(?:\b(?P<order>first|second|third|fourth|ersten|zweiten|dritten)\s+)?"
-    r"\b(?:joints?|links?|axis|axes|motors?|actuators?|bod(?:y|ies)|gelenks?|glied(?:e?s)?|legs?|arms?|rods?)\b"
+    r"\b(?:joints?|links?|axis|axes|motors?|actuators?|bod(?:y|ies)|gelenks?|achsen?|glied(?:e?s)?|legs?|arms?|rods?)\b"
     r"(?:\s*(?:no\.?|nr\.?|number|#)?\s*(?P<number>[1-9]))?"
     r"|(?:第(?P<chinese>[一二三四1-9])个?)?(?:关节|连杆|杆|支链|杆件)(?P<behind>[1-9])?",
     re.IGNORECASE,
 )
+_AXIS = re.compile(r"achsen?\s+[1-9]", re.IGNORECASE)
+"""A joint, where a number says which."""
 _MOST = 60
 _CONDITION = re.compile(
     r"(?<![\w*/+-])(?:(?:theta|vartheta|θ|ϑ|th|q)[d']{0,2}[1-9₁-₉]?\s*=\s*(?:[-±]?\s*(?:\d|π|pi\b))"
@@ -92,7 +94,8 @@ _SCALED = re.compile(
 )
 """Units in which the robot's numbers are not."""
 _SHARE = re.compile(
-    r"\b(?:half|halves|twice|double[sd]?|third|quarter|total|combined|halb\w*|hälfte|doppel\w*|gesamt\w*)\b"
+    r"\b(?:half|halves|twice|double[sd]?|third|quarter|total|combined|of both|together|zusammen"
+    r"|beider|halb\w*|hälfte|doppel\w*|gesamt\w*)\b"
     r"|半|两倍|二倍|之和|总",
     re.IGNORECASE,
 )
@@ -248,6 +251,8 @@ def _cut(prose: str) -> tuple[str, str]:
 def _of(prose: str, entry: str, typeset: bool) -> list[tuple[str, str]]:
     found = []
     for one in _WORDS[typeset].finditer(prose):
+        if one["latin"] and _AXIS.match(prose, one.start()):
+            continue
         word = one["latin"] or chinese_left(one["chinese"], entry)
         if word and not (one["latin"] and says_nothing(word, entry)):
             found.append((word, around(prose, one.start(), one.end())))
@@ -276,6 +281,8 @@ def around(prose: str, start: int, end: int) -> str:
 def _parts(prose: str, entry: str) -> list[tuple[str, str]]:
     """Links and joints by their number that are not the entry's own: joint 2 of x, or of tau1."""
     own = set(re.findall(r"\d", entry))
+    if "[" in entry:  # of a quantity, counted from 0
+        own = {str(int(k) + 1) for k in own}
     found = []
     for one in _PART.finditer(prose):
         told = one["order"] or one["chinese"]

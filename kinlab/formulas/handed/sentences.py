@@ -32,6 +32,8 @@ _OPEN_END = re.compile(r"[\w)}\]²³₀-₉']$")
 _LETTERS = re.compile(
     rf"(?<![\w\\{{.])(?!(?:sin|cos|tan|sqrt)\b)[{LATIN}]{{3,}}(?![\w(])|[{CHINESE}]"
 )
+_COMMENT = re.compile(r"(?<!\\)(?<![\d ] )(?:^|(?<=[\s;]))%[^\n=]*$", re.MULTILINE)
+"""A comment of LaTeX's or MATLAB's, without an equation in it."""
 _OPERATOR = re.compile(r"[*/^+=<>]")
 _UNIT = re.compile(r"\s*(?:(?:SI|the|units?|of)\s+)*(?:mm|cm|dm|km|m|kg|N|Nm|J|rad|s|deg)\b")
 _GAP = "\0"
@@ -79,9 +81,12 @@ def without_sentences(text: str, entry: str) -> str:
     """
     if _PROGRAM.search(text) or len(_WORD.findall(text)) > _MOST:
         return text
-    text = _DENOTES.sub(r"\1 = ", text)
+    text = _COMMENT.sub("", _DENOTES.sub(r"\1 = ", text))
     opened = _FONT.sub(lambda found: _opened(found, text), text)
     marked = _marked(opened)
+    if _GAP not in marked and MATHS.search(opened) and "=" in MATHS.sub(" ", opened):
+        lines = MATHS.sub(lambda found: f";\n{_bare(found[0])};\n", opened).split(";\n")
+        return f"${';'.join(line.strip() for line in lines if line.strip())}$"
     if _GAP not in marked and len(MATHS.findall(text)) < 2:
         return text
     *spoken, ending = marked.split(_GAP)
@@ -92,7 +97,7 @@ def without_sentences(text: str, entry: str) -> str:
     ]
     pieces = [piece for part in parts for piece in _apart(part)]
     pieces = [piece for piece in pieces if piece]
-    dollars = any("$" in piece for piece in pieces)
+    dollars = any(mark in piece for piece in pieces for mark in ("$", r"\[", r"\("))
     pieces = [_bare(piece) for piece in pieces]
     kept = _of_entry([piece for piece in pieces if piece], entry)
     if not kept:

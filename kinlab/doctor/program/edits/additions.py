@@ -347,7 +347,7 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
     named = isinstance(node, ast.Name | ast.Subscript)
     beside = _factors_beside(here) if term else set()
     dot = isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult)  # (v @ u)**2
-    dot = dot or (isinstance(node, ast.Call) and called(node) in ("dot", "norm"))
+    dot = dot or (isinstance(node, ast.Call) and called(node) in ("dot", "norm", *scope.called))
     if (isinstance(node, ENTRIES) or dot) and not power and (operated or term):
         yield here.instead(ast.BinOp(node, ast.Pow(), number(2)), "power", 1.08)
     yield from _squares_and_products(here, scope)
@@ -467,7 +467,12 @@ def _two_factors(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
 
 
 def _has_squares(node: ast.expr) -> bool:
-    """Whether it is a sum with a square in it, of which the root may be meant."""
+    """Whether it is a sum with a square in it, of which the root may be meant.
+
+    A vector times itself is such a sum.
+    """
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult):
+        return text_of(node.left) == text_of(node.right)
     if not isinstance(node, ast.BinOp) or not isinstance(node.op, ast.Add | ast.Sub):
         return False
     powers = [one.op for one in summands(node) if isinstance(one, ast.BinOp)]

@@ -66,6 +66,23 @@ def signs_exchanged(node: ast.BinOp) -> Iterator[ast.expr]:
             yield joined(first, new)
 
 
+def sides_exchanged(node: ast.BinOp) -> Iterator[ast.expr]:
+    """The law of cosines with a side for another: ``a*a + c*c - b*b`` of ``b*b + c*c - a*a``."""
+    first, terms = chain(node, SUMS)
+    for k, (op, term) in enumerate(terms if len(terms) > 1 else ()):
+        if isinstance(op, ast.Sub) and _is_square(first) and _is_square(term):
+            yield joined(term, [*terms[:k], (op, first), *terms[k + 1 :]])
+
+
+def _is_square(node: ast.expr) -> bool:
+    """Whether it is something times itself."""
+    if not isinstance(node, ast.BinOp):
+        return False
+    if isinstance(node.op, ast.Pow):
+        return getattr(node.right, "value", 0) == 2
+    return isinstance(node.op, ast.Mult) and ast.dump(node.left) == ast.dump(node.right)
+
+
 def times(number: ast.expr, node: ast.expr) -> ast.BinOp:
     """A number times something: of a product of vectors in front, ``0.5*w @ I @ w``."""
     first, factors = chain(node, (ast.MatMult,))

@@ -57,6 +57,8 @@ class _Company:
     at: int | None = None
 
 
+_ACROSS = 0.99
+"""Cost of the entry across the diagonal, where all others of a matrix are as those."""
 _NOTHING = 1.05
 """Cost of zeros for what is given beside them."""
 
@@ -108,6 +110,9 @@ class Elsewhere:
                     yield here.instead(one, "name", _NOTHING)
         if is_nothing(node) and isinstance(here.parent, ast.Assign):
             yield from _of_the_mirror(here)
+        for new in _across(here):
+            if _known(new, scope):
+                yield here.instead(new, _kind(node, new), _ACROSS)
         if shape is None or isinstance(node, ast.Constant | ast.List | ast.Tuple):
             return
         if self._roles and shape in (_VECTOR, _ROTATION):
@@ -302,6 +307,23 @@ def _of_the_mirror(here: Here) -> Iterator[ProgramEdit]:
         key = ast.Tuple([*map(copied, reversed(keys))], ast.Load())
         other = ast.Subscript(copied(target.value), key, ast.Load())
         yield here.instead(other, "name", 1.1)
+
+
+def _across(here: Here) -> Iterator[ast.expr]:
+    """What stands across the diagonal of a matrix that is symmetric as it is typed but for this."""
+    table = here.above[-2] if len(here.above) > 1 else None
+    rows = table.elts if isinstance(table, ast.List) else []
+    lists = [row.elts for row in rows if isinstance(row, ast.List) and len(row.elts) == len(rows)]
+    if len(lists) < len(rows) or not any(row is here.parent for row in rows):
+        return
+    i, j = next(k for k, row in enumerate(rows) if row is here.parent), here.field
+    places_ = [(k, m) for k in range(len(rows)) for m in range(k)]
+    unlike = [(k, m) for k, m in places_ if text_of(lists[k][m]) != text_of(lists[m][k])]
+    if unlike == [(max(i, j), min(i, j))]:
+        other = lists[j][i]
+        turned = any(isinstance(x, ast.UnaryOp) for x in (other, here.node))
+        if len(rows) > _TWO or not turned:  # of a rotation in the plane one is the opposite
+            yield copied(other)
 
 
 def _is_product(value: Any) -> bool:

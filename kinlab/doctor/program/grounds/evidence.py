@@ -369,8 +369,21 @@ class Grounds:
                 apart = len(numbers) == len(told) > 1 and None not in numbers
                 steps = good and apart and all(one.what in _STEPS for one in told)
                 returned.append(near or steps)
+        self._look_at_sums(tree, observed)
         if part and returned and all(returned):
             self.sound.add(part)
+
+    def _look_at_sums(self, tree: ast.FunctionDef, observed: Observed) -> None:
+        """Statements that add to what is a thing of the arm's once all is added: ``V += m*g*h``."""
+        added: dict[str, list[ast.AugAssign]] = {}
+        for node in nodes(tree):
+            if isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Name):
+                added.setdefault(node.target.id, []).append(node)
+        for node in nodes(tree) if added else ():
+            if isinstance(node, ast.Name) and node.id in added and isinstance(node.ctx, ast.Load):
+                senses = self._of(node, observed) or ()
+                if senses and all(one.what in _WHOLE and not one.form for one in senses):
+                    self.right |= {id(inner) for one in added[node.id] for inner in nodes(one)}
 
     def _is_moment(self, name: str, node: ast.expr, observed: Observed) -> bool:
         """Whether a moment of inertia is worked out, which a link of the arm's has."""

@@ -10,7 +10,7 @@ from typing import Any
 
 from kinlab.doctor.bytecode.syntax import called, nodes
 from kinlab.doctor.program.edits.numbers.data import NumberPlace
-from kinlab.doctor.program.grounds.called import stem
+from kinlab.doctor.program.grounds.called import kinds_called, stem
 from kinlab.doctor.program.places import DATA, paired
 from kinlab.doctor.program.trial import Trial
 
@@ -29,6 +29,7 @@ class Labels:
 
     def __init__(self, trial: Trial, count: int) -> None:
         self._space, self._count = trial.space, count
+        self._own = {part.name for part in trial.program.parts}
         self._text: dict[int, _Written] = {}
         for tree in trial.trees:
             for name, value in _named(tree):
@@ -81,10 +82,11 @@ class Labels:
             self._put(value.elt, names, at)
         elif isinstance(value, ast.Call):
             called_so = _parameters(self._space.get(called(value)))
-            for k, one in enumerate(value.args if called_so else value.args[:1]):
+            tensor = called(value) in self._own and kinds_called(stem(names[-1])) == ("moment",)
+            for k, one in enumerate(value.args if called_so or tensor else value.args[:1]):
                 self._put(one, [*names, *called_so[k : k + 1]], at)
             for keyword in value.keywords:
-                self._put(keyword.value, [*names, keyword.arg or ""], at)
+                self._put(keyword.value, names if tensor else [*names, keyword.arg or ""], at)
         elif isinstance(value, ast.List | ast.Tuple):
             padded = len(value.elts) == self._count + 1 and _is_nothing(value.elts[0])
             for k, one in enumerate(value.elts):

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import ast
 import copy
+import re
 from collections.abc import Sequence
 from types import FunctionType
 from typing import Any
@@ -13,6 +15,8 @@ from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes, relative_errors
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import ANGLES, ANY_ZERO, Case, less_turns
+from kinlab.doctor.program.grounds.scaled import is_own
+from kinlab.doctor.program.places import paired
 from kinlab.doctor.program.trial import TURNS, Trial, named_in, quietly
 from kinlab.errors import KinlabError
 from kinlab.formulas.record import state_by_state
@@ -24,6 +28,8 @@ _CLEARLY = 0.5
 """Share of a program's largest error that shows it to be wrong at a state."""
 _TURNS, _LONGER = 100, 6
 """Turns that loops may take at the first states; how many times as many as without an edit."""
+_STEP = re.compile(r"_*(h|dt|d?h|dq|dx|eps|step|delta|tol)\w?(_|$)", re.IGNORECASE)
+"""What the step of a difference is called, or where an iteration ends."""
 _WATCHED = 2
 """States at which a program is watched."""
 
@@ -51,6 +57,7 @@ class Asked:
         self.first = list(range(max(1, -(-_NUMBERS // size))))
         self.watched = [*self.first, len(self.first)][:_WATCHED]
         self._add_a_wrong_one()
+        self._add_another_branch()
         self._turns = TURNS
         self.differences = self._differences()
         self.allowed = allowed if self.differences else TOLERANCES.formula_agrees
@@ -69,13 +76,29 @@ class Asked:
         self._near = max(TOLERANCES.tried_further, self.allowed) * self.scale
 
     def _differences(self) -> bool:
-        """Whether a number of the program may be the step of a difference."""
-        inner = (node for tree in self.trial.trees for node in nodes(tree))
-        values = [getattr(node, "value", None) for node in inner]
-        values += [self.trial.space[name] for name in self.trial.program.data]
-        values += [value for part in self.trial.program.parts for value in _defaults(part.function)]
+        """Whether a number of the program may be the step of a difference.
+
+        A number of the robot's own is none, unless it is called one.
+        """
+        inner = [node for tree in self.trial.trees for node in nodes(tree)]
+        named = [("", getattr(node, "value", None)) for node in inner]
+        named += [
+            (one.id, getattr(value, "value", None))
+            for node in inner
+            if isinstance(node, ast.Assign)
+            for one, value in paired(node.targets[0], node.value)
+            if isinstance(one, ast.Name)
+        ]
+        named += [(name, self.trial.space[name]) for name in self.trial.program.data]
+        for part in self.trial.program.parts:
+            named += [("", value) for value in _defaults(part.function)]
         words = {word for tree in self.trial.trees for word in named_in(tree)}
-        steps = (isinstance(x, float) and 0 < abs(x) <= TOLERANCES.may_be_step for x in values)
+        steps = (
+            isinstance(x, float)
+            and 0 < abs(x) <= TOLERANCES.may_be_step
+            and (_STEP.match(name) or not is_own(self.case.robot, x))
+            for name, x in named
+        )
         return any(steps) or any("eps" in word or word == "finfo" for word in words)
 
     def _add_a_wrong_one(self) -> None:
@@ -86,6 +109,18 @@ class Asked:
         clearly = errors > _CLEARLY * np.max(errors)
         if clearly.any() and not clearly[self.first].any():
             self.first.append(int(np.argmax(clearly)))
+
+    def _add_another_branch(self) -> None:
+        """Sees to it that the signs of a branch are not all alike at each of the first states.
+
+        ``mode[0]`` in place of ``mode[i]`` is as good where they are.
+        """
+        answered = np.isfinite(self.case.hand.reshape(len(self.case.hand), -1)).all(axis=1)
+        for stack in self.case.arguments.values():
+            if stack.ndim > 1 and np.all(np.abs(stack) == 1.0):
+                apart = (stack.min(axis=1) < stack.max(axis=1)) & answered
+                if apart.any() and not apart[self.first].any():
+                    self.first.append(int(np.argmax(apart)))
 
     def _at(self, which: Sequence[int]) -> tuple[list[Array], Array]:
         """The arguments and the right answers at some states."""

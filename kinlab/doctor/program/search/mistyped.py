@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.numbers.as_the_arm import of_other_rows, of_table
 from kinlab.doctor.program.edits.numbers.data import numbers
 from kinlab.doctor.program.grounds.scaled import is_own, own_numbers
@@ -22,22 +23,40 @@ _COST = 0.97
 """Cost of the arm's number for one that is in no column of its table."""
 _DIGITS = 3
 """Digits of a number that tell whose it is wherever it stands."""
+_DECIMALS = 12
+"""Decimals of a coordinate that are no rounding."""
 _POINT = 1.5
 """Powers of ten by which a point is put wrong; 1 for 0.001 is another number."""
 
 
 def mistyped(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEdit]:
-    """The arm's numbers for such as are typed wrong, of columns first."""
+    """The arm's numbers for such as are typed wrong, of columns first.
+
+    Its numbers are those of its table, and where the frames are while all joints are at zero: the
+    points of screw axes.
+    """
+    home = _home(robot)
+    known = [*own_numbers(robot).tolist(), *home]
     for edit in of_table(trial, observed, robot):
         if edit.kind == "entries swapped" or (edit.numbers and is_slip(*edit.numbers)):
             yield edit
     yield from of_other_rows(trial, observed, robot)
     for place in numbers(trial, observed):
         value = place.value
-        if isinstance(value, float) and _is_strange(robot, value):
-            meant = {x for x in own_numbers(robot).tolist() if x * value > 0 and is_slip(value, x)}
+        if isinstance(value, float) and _is_strange(robot, value) and abs(value) not in home:
+            meant = {x for x in known if x * value > 0 and is_slip(value, x)}
             if len(meant) == 1 and max(map(len, map(_digits, (value, *meant)))) >= _DIGITS:
                 yield place.edit(meant.pop(), "number", _COST)
+
+
+def _home(robot: Any) -> set[float]:
+    """The sizes of the coordinates of an arm's frames while all its joints are at zero."""
+    table = table_of(robot)
+    if table is None:
+        return set()
+    still = np.zeros(table.n)
+    points = np.concatenate([table.frames(still), table.fk(still)])[:, :3, 3]
+    return {*np.abs(np.round(points, _DECIMALS)).ravel().tolist()} - {0.0}
 
 
 def is_slip(typed: float, meant: float) -> bool:

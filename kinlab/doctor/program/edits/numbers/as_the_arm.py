@@ -64,6 +64,9 @@ def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
         if rows and rows[-1] < table.n and len(rows) >= max(_TOLD, table.n - _MOVING):
             values = [found[i].value for i in rows]
             told = [column[rows] for column in _columns(table, values)]
+            for k in _exchanged(values, told):
+                some = [(found[rows[j]], values[k + k + 1 - j]) for j in (k, k + 1)]
+                yield _row(rows[k], some, [found[j] for j in rows], True)
             for (at, right), count in _wrong(values, told).items():
                 k = rows[at]
                 off.setdefault((name[0], k), {}).setdefault(name, []).append((found[k], right))
@@ -406,6 +409,18 @@ def _wrong(values: Sequence[float], columns: Sequence[Array]) -> dict[tuple[int,
                 if column[k] or len(apart) > 1:
                     found.setdefault((k, float(column[k])), len(off))
     return found
+
+
+def _exchanged(values: Sequence[float], columns: Sequence[Array]) -> list[int]:
+    """Where two neighbours are exchanged in what is a column otherwise, of which no two are one."""
+    if len({*values}) < max(_TOLD, len(values)):
+        return []
+    found: set[int] = set()
+    for k in range(len(values) - 1):
+        right = [*values[:k], values[k + 1], values[k], *values[k + 2 :]]
+        if any(all(map(_same, right, column.tolist())) for column in columns):
+            found.add(k)
+    return sorted(found)
 
 
 def _columns(table: DHTable, typed: Sequence[float]) -> list[Array]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -30,6 +31,8 @@ _PAIR = 2
 """Numbers that are reversed where they are exchanged."""
 _DIGITS = 10
 """Significant digits that somebody types at most."""
+_GRAVITY = re.compile(r"_*(?:g(?:_?(?:vec|0))?$|grav)", re.IGNORECASE)
+"""What the acceleration of gravity is called."""
 _NAMES = 12
 """Names of numbers of which any two may have been exchanged."""
 
@@ -40,7 +43,8 @@ def of_data(trial: Trial) -> Iterator[ProgramEdit]:
         if leaf.value:
             # a name for a negative number: lengths and masses are none
             negative = leaf.value < 0 and not leaf.place
-            yield leaf.edit(-leaf.value, "sign", 0.99 if negative else 1.05)
+            down = leaf.place and _GRAVITY.match(str(leaf.node))  # up or down
+            yield leaf.edit(-leaf.value, "sign", 0.99 if negative or down else 1.05)
             yield leaf.edit(2 * leaf.value, "factor", 1.2)
             yield leaf.edit(leaf.value / 2, "factor", 1.2)
             yield leaf.edit(leaf.value * pi / 180, "degrees", 1.15)

@@ -24,6 +24,8 @@ _TAKEN = 1.04
 """Cost of taking away a cross product that is added: its vectors are rather exchanged."""
 _BOTH_SIGNS = 1.06
 """Cost of the signs of two terms for one another."""
+_SIDES = 1.04
+"""Cost of a side for another in the law of cosines."""
 _TURNED = 1.01
 """Cost of parentheses behind a matrix: ``R.T @ (v + w)`` for ``R.T @ v + w``."""
 _DIVIDED = 1.2
@@ -64,6 +66,8 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
         if not (isinstance(here.parent, ast.BinOp) and isinstance(here.parent.op, chains.SUMS)):
             for new in chains.signs_exchanged(node):
                 yield here.instead(new, "sign", _BOTH_SIGNS)
+            for new in chains.sides_exchanged(node):
+                yield here.instead(new, "names exchanged", _SIDES)
         for new in chains.crosswise(node):
             yield here.instead(new, "names exchanged", 1.13)
         for new in chains.called_once(node):
