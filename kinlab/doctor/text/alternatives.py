@@ -17,6 +17,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.text.line import (
+    Change,
     Line,
     Place,
     inside_wave,
@@ -604,13 +605,18 @@ def _as_term(line: Line, place: Place) -> None:
     inside = line.segment(place)
     there = [_factors(line, term) for term in re.split(r"[-+]", inside)]
     told, end = N_("the term {term} is missing in {sum}"), place.span[1]
-    for piece, value in line.pieces.items():
+    pieces = [*line.pieces]
+    values = np.array([np.broadcast_to(x, (line.count,)) for x in line.pieces.values()])
+
+    def change(k: int) -> Change:
+        piece, (sign, near) = pieces[k // 2], (("+", 1.12), ("-", 1.6))[k % 2]
         twice = 0.4 * (_factors(line, piece) in there)
-        for sign, near, added in (("+", 1.12, value), ("-", 1.6, -value)):
-            cost = near + _FACTOR_MORE * piece.count("*") + twice + _OF_A_PRODUCT * (not chain)
-            shown = {"term": piece if sign == "+" else f"-{piece}", "sum": f"({inside})"}
-            span = (end, end, f"{line.gap}{sign}{line.gap}{piece}")
-            line.edit(place, place.value + added, span, "missing term", cost, told, shown)
+        cost = near + _FACTOR_MORE * piece.count("*") + twice + _OF_A_PRODUCT * (not chain)
+        shown = {"term": piece if sign == "+" else f"-{piece}", "sum": f"({inside})"}
+        typed = f"{line.gap}{sign}{line.gap}{piece}"
+        return Change(end, end, typed, "missing term", cost, told, (), shown)
+
+    line.put_terms(place, np.stack([values, -values], axis=1).reshape(-1, line.count), change)
 
 
 def _in_brackets(line: Line, place: Place) -> bool:
@@ -622,9 +628,11 @@ def _in_brackets(line: Line, place: Place) -> bool:
 
 def _factors(line: Line, term: str) -> list[str]:
     """The robot's names of a product, whatever number stands in front of it."""
-    found = re.findall(r"([A-Za-z_]\w*)((?:\*\*\d)?)", term)
-    own = ((words_in(line.text.symbols.get(name, name)), power) for name, power in found)
-    return sorted(f"{word}{power}" for words, power in own for word in words)
+    if term not in line.factored:
+        found = re.findall(r"([A-Za-z_]\w*)((?:\*\*\d)?)", term)
+        own = ((words_in(line.text.symbols.get(name, name)), power) for name, power in found)
+        line.factored[term] = sorted(f"{word}{power}" for words, power in own for word in words)
+    return line.factored[term]
 
 
 def _whole_terms(line: Line) -> None:

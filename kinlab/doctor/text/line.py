@@ -128,6 +128,7 @@ class Line:
         forms: the derived formula in the ways in which people write it, term by term.
         numeric: whether the names have the robot's own numbers: then nothing is believed that
             rests on the value of a name.
+        factored: the factors of products, as far as they were asked for.
     """
 
     text: Written
@@ -139,6 +140,7 @@ class Line:
     places: list[Place] = field(default_factory=list)
     changes: list[Change] = field(default_factory=list)
     rows: list[Array] = field(default_factory=list)
+    factored: dict[str, list[str]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.count = len(self.target)
@@ -331,18 +333,41 @@ class Line:
             self.changes.append(change)
             self.rows.append(effect)
 
-    def _vanishes(self, place: Place, new: Array) -> bool:
+    def put_terms(self, place: Place, added: Array, change: Callable[[int], Change]) -> None:
+        """Notes terms that are missing in a place, as :meth:`put` does one after another.
+
+        Args:
+            place: where.
+            added: their values, (K, N).
+            change: makes the change of the one of a number; asked of those that are noted alone.
+        """
+        new = place.value + added
+        with np.errstate(invalid="ignore"):
+            effects = self.climbed(place, new) - self.root.value
+            sizes = np.max(np.abs(effects), axis=-1)
+        kept = np.isfinite(effects).all(axis=-1) & (sizes > 1e-12 * self.scale)
+        kept &= ~self._vanishes(place, new)
+        for k in np.flatnonzero(kept & ~self._is_there(effects)):
+            self.changes.append(change(int(k)))
+            self.rows.append(effects[k])
+
+    def _vanishes(self, place: Place, new: Array) -> Any:
         """Whether nothing is left of a sum with something else in one of its places."""
         above = place.above
         if above is None or not is_sum(above.node) or not np.any(above.value):
-            return False
-        return not np.any(_recombined(above, place, new, self.siblings))
+            return np.zeros(np.shape(new)[:-1], dtype=bool)
+        left = np.atleast_1d(_recombined(above, place, new, self.siblings))
+        return ~np.any(left, axis=-1)
 
-    def _is_there(self, effect: Array) -> bool:
+    def _is_there(self, effect: Array) -> Any:
         """Whether what is added is a term that is there, or takes one away."""
         allowed = TOLERANCES.effect_matches * self.scale
-        gaps = np.abs([self.shares + effect, self.shares - effect])
-        return bool(np.any(np.max(gaps, axis=-1) <= allowed))
+        every = effect[..., None, :]
+        gaps = np.minimum(
+            np.max(np.abs(self.shares + every), axis=-1),
+            np.max(np.abs(self.shares - every), axis=-1),
+        )
+        return np.any(gaps <= allowed, axis=-1)
 
     @cached_property
     def shares(self) -> Array:
@@ -371,7 +396,7 @@ class Line:
                 above = place.above
                 new = _recombined(above, place, new, self.siblings)
                 place = above
-        return np.broadcast_to(new, (self.count,))
+        return np.broadcast_to(new, (*np.shape(new)[:-1], self.count))
 
     @cached_property
     def siblings(self) -> dict[int, list[Place]]:
