@@ -807,6 +807,9 @@ _IN_BOOKS = (
     "L lagrangian",
     "T K E link_kinetic_energies",
     "r rho fivebar_rod_length",
+    "phi planar_angle",
+    "j n servo_ratio",
+    "v^2 tip_speed_squared",
     "T A H fk",
     "J Jv planar_jacobian jacobian jacobian_tool jacobian_spatial",
     "tau u Q t inverse_dynamics inverse_dynamics_loaded lagrange_torques",
@@ -829,6 +832,7 @@ _MATRICES = "mass_matrix coriolis_matrix jacobian jacobian_tool jacobian_spatial
 LONG = {*_MATRICES.split(), *_VECTORS.split()}
 TWO = {*"MHBJTRC", "Jv", "Jw", "coriolis_coefficients", *_MATRICES.split()}
 """Quantities of two indices, whose one column is no vector."""
+_SPEED_SQUARED = re.compile(r"\\?\|?v(?:_\{?\w{1,3}\}?)?\|?\s*(?:(?:\^|\*\*)\s*\{?\s*2\s*\}?|²)")
 _PLACES = re.compile(r"(\D+?)[_\[]?([\d,]*)\]?", re.ASCII)
 
 
@@ -850,6 +854,8 @@ def of_one_name(left: str, name: str) -> bool:
 
 def _head_and_places(name: str) -> tuple[str, str]:
     """``("m", "12")`` of M12, ``("mass_matrix", "12")`` of ``mass_matrix[0,1]``."""
+    if _SPEED_SQUARED.fullmatch(name.strip("& $")):
+        return "v^2", ""
     found = _PLACES.fullmatch(name.replace(" ", ""))
     if found is None:
         return name.lower(), ""

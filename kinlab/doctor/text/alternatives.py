@@ -42,6 +42,8 @@ _LARGE, _DOUBLED = 10, 1.05
 """Letters of the distances of centres."""
 _OF_LINKS = set().union(*_LENGTHS)
 _MOTION = re.compile(r"(qdd|qd|q)(\d+)")
+_OWN = 0.2
+"""What another number of the robot's costs less for one of its own."""
 _ANGLE, _NEAR_ANGLE = math.pi / 12, 0.1
 """Angles that a decimal in a sine may be meant for, and how near, relative."""
 _REDUCED = 0.05
@@ -211,8 +213,10 @@ def _number(line: Line, place: Place) -> None:
         sure = means or (decimal and len(alike(line, line.segment(place))) < 2)
         if _beside_names(line, place):  # what is wrong with them comes to a number too
             sure = line.meanings.parameter(right) is not None
+        sure = sure and math.isfinite(right)
         if sure and not shown.startswith("-") and not (idle and shown == "1"):
-            doubt = 0.5 * held + 0.3 * (not means)
+            own = line.meanings.parameter(right) is not None
+            doubt = 0.5 * held + 0.3 * (not means) - _OWN * (own and held)
             value = np.full(line.count, right)
             line.instead(place, shown, value, "coefficient", 1.15 + doubt)
     if line.numeric and line.only_numbers:
@@ -255,7 +259,13 @@ def _beside_names(line: Line, place: Place) -> bool:
 
 
 def _fitting(line: Line, place: Place) -> float:
-    """The number that would do best at a place, of which the whole is a multiple or a quotient."""
+    """The number that would do best at a place, of which the whole is a multiple or a quotient.
+
+    Of one that is squared the root of that.
+    """
+    if place.above is not None and _is_base(place) and line.segment(place.above).endswith("**2"):
+        square = _fitting(line, place.above)
+        return math.sqrt(square) if square > 0 else math.nan
     above = place.above.node if place.above is not None and place.role == 1 else None
     below = isinstance(above, ast.BinOp) and isinstance(above.op, ast.Div)
     turned = 1.0 / place.value if below else place.value

@@ -347,6 +347,8 @@ class Line:
             sizes = np.max(np.abs(effects), axis=-1)
         kept = np.isfinite(effects).all(axis=-1) & (sizes > 1e-12 * self.scale)
         kept &= ~self._vanishes(place, new)
+        if self.numeric:
+            kept &= ~np.array([_in_proportion(place.value, one) for one in new], dtype=bool)
         for k in np.flatnonzero(kept & ~self._is_there(effects)):
             self.changes.append(change(int(k)))
             self.rows.append(effects[k])

@@ -44,16 +44,19 @@ _FRAME = re.compile(
     r"|\b(?:basis|welt|inertial)(?:koordinaten)?system\b|基坐标系|世界坐标系|固定坐标系",
     re.IGNORECASE,
 )
-_ORDER = {"first": 1, "second": 2, "third": 3, "fourth": 4, "ersten": 1, "zweiten": 2, "dritten": 3}
+_ORDER = {"first": 1, "second": 2, "third": 3, "fourth": 4}
+_ORDER |= {"erste": 1, "zweite": 2, "dritte": 3, "vierte": 4}
+_ORDER |= {"ersten": 1, "zweiten": 2, "dritten": 3, "vierten": 4}
 _ORDER |= {"一": 1, "二": 2, "三": 3, "四": 4}
 _PART = re.compile(
-    r"(?:\b(?P<order>first|second|third|fourth|ersten|zweiten|dritten)\s+)?"
+    r"(?:\b(?P<order>first|second|third|fourth|ersten?|zweiten?|dritten?|vierten?)\s+)?"
     r"\b(?:joints?|links?|axis|axes|motors?|actuators?|bod(?:y|ies)|gelenks?|achsen?|glied(?:e?s)?|legs?|arms?|rods?)\b"
     r"(?:\s*(?:no\.?|nr\.?|number|#)?\s*(?P<number>[1-9]))?"
-    r"|(?:第(?P<chinese>[一二三四1-9])个?)?(?:关节|连杆|杆|支链|杆件)(?P<behind>[1-9])?",
+    r"|(?:第(?P<chinese>[一二三四1-9])个?)?(?:关节|连杆|杆|支链|杆件|轴)(?P<behind>[1-9])?",
     re.IGNORECASE,
 )
-_AXIS = re.compile(r"achsen?\s+[1-9]", re.IGNORECASE)
+_AXIS = re.compile(r"achsen?\b", re.IGNORECASE)
+_ORDINAL = re.compile("第[一二三四1-9]轴")
 """A joint, where a number says which."""
 _MOST = 60
 _CONDITION = re.compile(
@@ -75,7 +78,10 @@ _TURNED = re.compile(
 )
 """Words that may tell of another axis, frame or sense of turning."""
 _UP_TO = re.compile(
-    r"\bup to (?:the |a |its )?(?:\w+ )?(?:sign|factor|constant|scale|order)\w*", re.IGNORECASE
+    r"\bup to (?:the |a |its )?(?:\w+ )?(?:sign|factor|constant|scale|order)\w*"
+    r"|\bbis auf (?:das |den |die |einen |eine |ein )?(?:\w+ )?(?:vorzeichen|faktor|konstante)\w*"
+    r"|(?:相差|差|除了|除)一?个?(?:正负|负)?(?:符号|号|系数|常数|因子)|符号相反",
+    re.IGNORECASE,
 )
 _ELSEWHERE = re.compile(
     r"\b(?:I_?\d|inertias?)\b[^.;=]{0,40}?\b(?:about|around|at) (?:the |its |their )?"
@@ -94,16 +100,17 @@ _SCALED = re.compile(
 )
 """Units in which the robot's numbers are not."""
 _SHARE = re.compile(
-    r"\b(?:half|halves|twice|double[sd]?|third|quarter|total|combined|of both|together|zusammen"
-    r"|beider|halb\w*|hälfte|doppel\w*|gesamt\w*)\b"
+    r"\b(?:half|halves|twice|double[sd]?|third|quarter|total|full|whole|combined|of both"
+    r"|together|zusammen|beider|halb\w*|hälfte|doppel\w*|gesamt\w*)\b"
     r"|半|两倍|二倍|之和|总",
     re.IGNORECASE,
 )
 """Words of another size than the thing beside them."""
 _OWN = re.compile(
-    r"(?<![A-Za-z])(?:(?P<own>[lLadrmMI][1-9])(?!\w|\s*/)|(?:[lLrad]c|I[cC]|[rsc])[1-9])"
+    r"(?<![A-Za-z])(?:(?P<own>[lLadrmMI][1-9]|e(?=\s))(?!\w|\s*/)|(?:[lLrad]c|I[cC]|[rsc])[1-9])"
 )
 """Names of a link's own sizes, and of what may well be a share of them: a centre's distance."""
+_DISTANCE = re.compile(r"\bdistance|\babst[aä]nd|距离", re.IGNORECASE)
 _CLAUSE = re.compile(r"[;,:=，。；：、]|\.(?!\d)")
 _ANGLE = re.compile(r"\bangles?\b|winkel|角", re.IGNORECASE)
 _LINK = re.compile(r"\blinks?\b|\bglied|连杆|杆", re.IGNORECASE)
@@ -138,7 +145,19 @@ def explained_by(text: str) -> str:
             found += [one for one in _of(behind, BEHIND, typeset) if not _used(one[0], text)]
             if _ANGLE.search(behind) and _LINK.search(behind) and not _JOINT.search(behind):
                 found.append(("", behind.strip()[:_MOST]))  # the angle of link 2 may be a sum
+            found += [("", clause) for clause in _to_elsewhere(_flat(behind))]
     return found[0][1] if found else ""
+
+
+def _to_elsewhere(text: str) -> list[str]:
+    """Distances from a joint of another number than the name's own: ``xt`` from joint 2."""
+    found = []
+    for clause in _CLAUSE.split(text):
+        name, far = re.search(r"[A-Za-z]\w*", clause), _DISTANCE.search(clause)
+        numbers = {number for one in _PART.finditer(clause) if (number := one["number"])}
+        if name and far and numbers and numbers.isdisjoint(re.findall(r"\d", name[0])):
+            found.append(clause.strip()[:_MOST])
+    return found
 
 
 def _shares(text: str, own: bool = False) -> list[str]:
@@ -251,12 +270,18 @@ def _cut(prose: str) -> tuple[str, str]:
 def _of(prose: str, entry: str, typeset: bool) -> list[tuple[str, str]]:
     found = []
     for one in _WORDS[typeset].finditer(prose):
-        if one["latin"] and _AXIS.match(prose, one.start()):
+        if one["latin"] and _AXIS.fullmatch(one["latin"]) and _is_numbered(prose, *one.span()):
             continue
-        word = one["latin"] or chinese_left(one["chinese"], entry)
+        word = one["latin"] or chinese_left(_ORDINAL.sub("", one["chinese"]), entry)
         if word and not (one["latin"] and says_nothing(word, entry)):
             found.append((word, around(prose, one.start(), one.end())))
     return found
+
+
+def _is_numbered(prose: str, start: int, end: int) -> bool:
+    """Whether an axis is told by its number: ``Achse 1``, ``die dritte Achse``."""
+    before = prose[:start].split()[-1:]
+    return bool(re.match(r"\s+[1-9]", prose[end:]) or (before and before[0].lower() in _ORDER))
 
 
 def around(prose: str, start: int, end: int) -> str:
