@@ -22,6 +22,7 @@ from kinlab.doctor.glossary.textbook import Glossary, Row, Sense
 from kinlab.doctor.program.edits.scope.forms import summands
 from kinlab.doctor.program.grounds.called import kinds_called, stem, unlike
 from kinlab.doctor.program.grounds.helpers import true_helpers
+from kinlab.doctor.program.grounds.scaled import is_free, is_own
 from kinlab.doctor.program.observed import Observed, Seen
 from kinlab.doctor.program.places import DATA, ProgramEdit, paired
 from kinlab.doctor.program.trial import Trial, named_in
@@ -89,11 +90,18 @@ class Grounds:
         observed: what its expressions were at the states that it was watched at.
         known: the textbook's things at these states; none of a robot without a table.
         stepping: whether it may take differences: its vectors are then those of states beside.
+        robot: whose own numbers are right as they are.
     """
 
     def __init__(
-        self, trial: Trial, observed: Observed, known: list[Glossary], stepping: bool = False
+        self,
+        trial: Trial,
+        observed: Observed,
+        known: list[Glossary],
+        stepping: bool = False,
+        robot: Any = None,
     ) -> None:
+        self.robot = robot
         self.trial, self.observed = trial, observed
         self.near = TOLERANCES.of_a_state_beside if stepping else TOLERANCES.same_relation
         self.known = known
@@ -172,10 +180,22 @@ class Grounds:
         if mirrored or self._makes_a_chain(edit):
             return -_MEANT
         unlike_ = self._adds_unlike(edit.changes[0].new) or self._takes_another_centre(edit)
-        more = _UNLIKE if unlike_ else 0.0
+        more = _UNLIKE if unlike_ or self._spoils_a_number(edit) else 0.0
         more += _AGREED if id(edit.node) in self.agreed else 0.0
         more += _USED * self._where_it_is_used(edit) + _RENAMED * self._turns_a_renamed(edit)
         return more + (_TRUSTED if edit.part in self.trusted else 0.0)
+
+    def _spoils_a_number(self, edit: ProgramEdit) -> bool:
+        """Whether an edit turns round a number that the robot has as it is typed."""
+        if edit.kind != "sign" or self.robot is None:
+            return False
+        node: Any = edit.node
+        down = isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub)
+        value = getattr(node.operand if down else node, "value", None)
+        if not isinstance(value, float) or not is_free(value):
+            return False
+        value = -value if down else value
+        return is_own(self.robot, value) and not is_own(self.robot, -value)
 
     def _mirrors(self, edit: ProgramEdit) -> bool:
         """Whether an edit puts a sign in front of a rotation matrix: of space it is none then."""

@@ -162,7 +162,8 @@ class LineSearch:
     def _grounds(self) -> Grounds:
         """What is right in the program, in the axes of the base in which more of it is."""
         given, stepping = (self.trial, self.observed), self.asked.differences
-        every = [Grounds(*given, known, stepping) for known in self.things]
+        robot = self.case.robot
+        every = [Grounds(*given, known, stepping, robot) for known in self.things]
         return max(every, key=lambda one: one.count(self.observed)) if len(every) > 1 else every[0]
 
     @property

@@ -60,13 +60,16 @@ def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
     alone: set[tuple[_Cell, float]] = set()
     columns = _columns_of(trial, observed)
     for name, found in columns.items():
+        found = _from_zero(found, table.n)
         rows = sorted(found)  # of a column with None for what turns or slides, those that are told
         if rows and rows[-1] < table.n and len(rows) >= max(_TOLD, table.n - _MOVING):
             values = [found[i].value for i in rows]
             told = [column[rows] for column in _columns(table, values)]
             for k in _exchanged(values, told):
                 some = [(found[rows[j]], values[k + k + 1 - j]) for j in (k, k + 1)]
-                yield _row(rows[k], some, [found[j] for j in rows], True)
+                one, other = (x.holder if x.place is None else x.place.holder for x, _y in some)
+                if one is other:  # numbers of two rows are told one by one
+                    yield _row(rows[k], some, [found[j] for j in rows], True)
             for (at, right), count in _wrong(values, told).items():
                 k = rows[at]
                 off.setdefault((name[0], k), {}).setdefault(name, []).append((found[k], right))
@@ -81,6 +84,11 @@ def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
             row = _row(k, some, whole, alone.issuperset(some))
             yield replace(row, cost=row.cost + _TOGETHER)
         yield from (cell.edit(right) for found in cells.values() for cell, right in found)
+
+
+def _from_zero(found: dict[int, _Cell], count: int) -> dict[int, _Cell]:
+    """A column by its rows, counted from 0, though its array may count from 1."""
+    return {k - 1: found[k] for k in found} if sorted(found) == [*range(1, count + 1)] else found
 
 
 def of_other_rows(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEdit]:
@@ -167,7 +175,8 @@ def as_it_is(trial: Trial, observed: Observed, robot: Any) -> Callable[[ProgramE
         told = len(values) == table.n and len({*map(abs, values)}) > 1
         if told and any(all(map(_same, column, values)) for column in _columns(table, values)):
             same.add(name)
-            same |= {id(cell.node) for cell in found.values() if cell.node is not None}
+            typed_ = [cell.node for cell in found.values() if cell.node is not None]
+            same |= {id(inner) for node in typed_ for inner in nodes(node)}
 
     def sure(edit: ProgramEdit) -> bool:
         if edit.part == DATA:
@@ -292,6 +301,11 @@ def _columns_of(trial: Trial, observed: Observed) -> dict[Any, dict[int, _Cell]]
                     cell = _cell(observed, part, holder, field)
                     if cell is not None:
                         found.setdefault(((part, name), key), {})[k] = cell
+        for name, k, row in _rows_set(tree):
+            for key, holder, field in _cells([row], 0, row):
+                cell = _cell(observed, part, holder, field)
+                if cell is not None:
+                    found.setdefault(((part, name), key), {})[k] = cell
         for table in nodes(tree):
             if isinstance(table, ast.List | ast.Tuple) and isinstance(table.ctx, ast.Load):
                 for k, row in enumerate(table.elts):
@@ -300,6 +314,17 @@ def _columns_of(trial: Trial, observed: Observed) -> dict[Any, dict[int, _Cell]]
                         if cell is not None:
                             found.setdefault((id(table), key), {})[k] = cell
     return found
+
+
+def _rows_set(tree: ast.AST) -> Iterator[tuple[str, int, ast.expr]]:
+    """The rows, or columns, of an array that are set one by one: ``dh[4, :] = [...]``."""
+    for line in (node for node in nodes(tree) if isinstance(node, ast.Assign)):
+        target, value = line.targets[0], line.value
+        if isinstance(target, ast.Subscript) and isinstance(target.value, ast.Name):
+            keys = target.slice.elts if isinstance(target.slice, ast.Tuple) else [target.slice]
+            at = [key.value for key in keys if isinstance(key, ast.Constant)]
+            if len(at) == 1 and type(at[0]) is int and isinstance(value, ast.List | ast.Tuple):
+                yield target.value.id, at[0], value
 
 
 def _calls(tree: ast.AST) -> list[ast.Call]:
@@ -406,6 +431,8 @@ def _wrong(values: Sequence[float], columns: Sequence[Array]) -> dict[tuple[int,
         off = [int(k) for k in np.flatnonzero(np.logical_not(same))]
         if 2 * sum(same) >= len(same):
             for k in off:
+                if not any(apart) and _same(float(column[k]), -values[k]):
+                    continue  # noughts do not tell which way an axis points
                 if column[k] or len(apart) > 1:
                     found.setdefault((k, float(column[k])), len(off))
     return found
