@@ -228,9 +228,6 @@ class _Reader:
 
     def _call(self, name: str, args: list[Node]) -> Node:
         plain = tree.SYNONYMS.get(name, name)
-        if name == "hypot" and len(args) == 2:
-            square = tree.add(*(tree.power(one, Fraction(2)) for one in args))
-            return tree.power(square, Fraction(1, 2))
         if plain not in tree.FUNCTIONS:
             choices = near_names(name, [*tree.FUNCTIONS, *tree.SYNONYMS])
             raise refused(

@@ -249,6 +249,56 @@ def test_another_point_and_other_units_are_not_passed_over(clause):
     assert found.remarks, str(found)
 
 
+@pytest.mark.parametrize(
+    ("robot", "entry", "text"),
+    [
+        ("spatial3r", "J33", r"Bis auf das Vorzeichen gilt J_{33} = x_t \cos\theta_3."),
+        ("spatial3r", "J33", r"相差一个符号：J_{33} = x_t \cos\theta_3"),
+        ("spatial3r", "x", "x = (a1*c1 + a2*c12) + xt*c12*c3, where xt is the distance of the tool from joint 2"),
+        ("planar2r", "M22", "M22 = m2*l2^2, where m2 is the mass of both links together"),
+        ("isotropic", "loop1", "(x - e - l1*cos(theta1))^2 + (y - l1*sin(theta1))^2 = l2^2, with e the full distance"),
+    ],
+)  # fmt: skip
+def test_what_makes_it_another_claim_is_not_passed_over(robot, entry, text):
+    try:
+        found = kl.diagnose(robot, entry, text)
+    except kl.KinlabError:
+        return
+    assert found.remarks, str(found)
+
+
+SPEED = r"l_1^2\dot\theta_1^2 + l_2^2(\dot\theta_1+\dot\theta_2)^2 + 2l_1l_2c_2\dot\theta_1(\dot\theta_1+\dot\theta_2)"
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "text"),
+    [
+        ("planar2r", "tip_speed_squared", f"末端速度的平方为 v^2 = {SPEED}"), ("planar2r", "tip_speed_squared", f"v_e^2 = {SPEED}"),
+        ("planar3r", "planar_angle", "φ = θ₁ + θ₂ + θ₃ (orientation of the hand, in rad)"),
+        ("isotropic", "servo_ratio", r"减速比的上限：$j = \frac{\pi N_{\max}}{30\,\dot{\Theta}_{\max}}$"),
+        ("scara", "M33", r"第三轴（移动关节）的惯量：M_{33} = m_3 + m_4 + I_{a3}"),
+        ("plotclock", "fivebar_equation[0,2]", "Leg 1: A cos θ + B sin θ = C with C = l2² − l1² − e² − x² − y² + 2 e x"),
+        ("planar2r_rods", "mass_matrix",
+         r"\[ M(q) = \begin{bmatrix} \alpha + 2\beta\cos\theta_2 & \delta + \beta\cos\theta_2 \\ "
+         r"\delta + \beta\cos\theta_2 & \delta \end{bmatrix} \] where $\alpha = I_1 + I_2 + m_1 l_{c1}^2 + "
+         r"m_2(l_1^2 + l_{c2}^2)$, $\beta = m_2 l_1 l_{c2}$, $\delta = I_2 + m_2 l_{c2}^2$."),
+        ("planar2r", "x", "% the position of the hand, cf. Paul (1981)\nx = l1*c1 + l2*c12"),
+        ("isotropic", "fivebar_rates[0]",
+         r"u_x = \cos\theta_1, u_y = \sin\theta_1, w_x = (x - e - l_1\cos\theta_1)/l_2, w_y = (y - l_1\sin\theta_1)/l_2"
+         "\n" r"$$\dot\theta_1 = \frac{\dot x w_x + \dot y w_y}{l_1 (u_x w_y - u_y w_x)}$$"),
+        ("planar2r", "x", "x = hypot(0.3, 0.4)*c1 + l2*c12"),
+    ],
+)  # fmt: skip
+def test_squares_angles_and_definitions_are_read_by_their_names(robot, entry, text):
+    found = right(robot, entry, text)
+    assert not any("not read" in str(one) for one in found.remarks), str(found)
+
+
+def test_of_numbers_alone_the_one_that_becomes_the_robot_s_own_is_told():
+    found = kl.diagnose("spatial3r", "M33", "M33 = 0.014 + 1.2*(0.12^2 + 0.01^2)")
+    assert "0.01 should be 0.03" in str(found)
+
+
 def test_the_refused_words_are_said_with_the_remedy():
     text = f"x = {X}, where q1 is measured from the vertical"
     refused("planar2r", "x", text, r"measured from the vertical.*leave it out")

@@ -39,6 +39,7 @@ _OTHER_COMMA = re.compile(r"(?<!\d),|,(?!\d)")
 _CALL = re.compile(r"(?:(?<![A-Za-z])(?!(?:sin|cos|tan|sqrt)\()[A-Za-z_]\w*|[\])])\s?\(\s*-?$")
 _POINT = re.compile(r"\d\.\d")
 _SUMS = re.compile(r"(?<![\w.])(?:np\.|numpy\.)?(?:linalg\.)?(dot|sum|norm)\s*\((?=\s*\[)")
+_HYPOT = re.compile(r"(?<![\w.])(?:(?:np|numpy|math)\.)?hypot\s*\(")
 _NUMBERED = re.compile(
     r"^\s*(?:\(\s*\d+(?:[.-]\d+)?[a-z]?\s*\)|\d+[.)])\s*(?=[\\A-Za-zα-ω][^=\n]{0,30}=)"
 )
@@ -66,6 +67,7 @@ def without_code(text: str, alone: bool) -> str:
     text = _of_function(text)
     if "\\" in text or "$" in text:
         return text
+    text = _without_hypot(text)
     owner, *others = sorted({*_OWNER.findall(text)}) or [""]
     if owner and not others and not re.search(rf"(?<![\w.]){owner}(?![\w.])", text):
         text = _OWNER.sub("", text)
@@ -148,6 +150,19 @@ def _without_lists(text: str) -> str:
         start = found.start() + 1
         if told:
             text = f"{text[: found.start()]}{told}{text[end + 1 :]}"
+    return text
+
+
+def _without_hypot(text: str) -> str:
+    """``hypot(a, b)`` as the root of a sum of squares."""
+    for _ in range(_MOST):
+        found = _HYPOT.search(text)
+        end = closes(text, found.end() - 1) if found else -1
+        sides = parts_at(text[found.end() : end], ",") if found and end > 0 else []
+        if found is None or len(sides) != 2:
+            break
+        squares = " + ".join(f"({side})**2" for side in sides)
+        text = f"{text[: found.start()]}sqrt({squares}){text[end + 1 :]}"
     return text
 
 
