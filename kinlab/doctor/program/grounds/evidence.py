@@ -192,7 +192,7 @@ class Grounds:
         node: Any = edit.node
         down = isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub)
         value = getattr(node.operand if down else node, "value", None)
-        if not isinstance(value, float) or not is_free(value):
+        if not isinstance(value, float) or not np.isfinite(value) or not is_free(value):
             return False
         value = -value if down else value
         return is_own(self.robot, value) and not is_own(self.robot, -value)

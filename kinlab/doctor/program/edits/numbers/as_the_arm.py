@@ -39,6 +39,8 @@ _END, _DECIMALS = 1.0, 15
 """Cost of the arm's base or tool for the identity; decimals that its numbers have."""
 _DECIMALS_OF_DEGREES = 9
 """Decimals that angles in degrees are typed with at most."""
+_OF_AXES = 9
+"""The last columns, of centres and of tensors, whose signs are those of a link's axes."""
 _PARTS = 12
 """Into how many parts of pi a number may fall."""
 
@@ -426,12 +428,13 @@ def _wrong(values: Sequence[float], columns: Sequence[Array]) -> dict[tuple[int,
     found: dict[tuple[int, float], int] = {}
     if len({*values}) > 1 and any(map(all, alike)):
         return found
-    for column, same in zip(columns, alike, strict=True):
+    for at, (column, same) in enumerate(zip(columns, alike, strict=True)):
+        of_axes = at >= len(columns) - _OF_AXES
         apart = {float(x) for x, good in zip(column, same, strict=True) if good}
         off = [int(k) for k in np.flatnonzero(np.logical_not(same))]
         if 2 * sum(same) >= len(same):
             for k in off:
-                if not any(apart) and _same(float(column[k]), -values[k]):
+                if of_axes and not any(apart) and _same(float(column[k]), -values[k]):
                     continue  # noughts do not tell which way an axis points
                 if column[k] or len(apart) > 1:
                     found.setdefault((k, float(column[k])), len(off))
