@@ -299,6 +299,17 @@ def test_of_numbers_alone_the_one_that_becomes_the_robot_s_own_is_told():
     assert "0.01 should be 0.03" in str(found)
 
 
+@pytest.mark.parametrize(
+    ("entry", "text"),
+    [
+        ("V", "With zero gravity, V = 0"), ("M22", "For uniform rods M22 = m2*l2^2/3"), ("M22", "质心位于中点，M22 = m2*l2^2/4"),
+        ("planar_position_determinant", r"In gestreckter Lage ist \det J = 0"),
+    ],
+)  # fmt: skip
+def test_what_is_right_under_its_words_is_not_called_wrong(entry, text):
+    refused("planar2r", entry, text)
+
+
 def test_the_refused_words_are_said_with_the_remedy():
     text = f"x = {X}, where q1 is measured from the vertical"
     refused("planar2r", "x", text, r"measured from the vertical.*leave it out")

@@ -314,9 +314,10 @@ def _across(here: Here) -> Iterator[ast.expr]:
     table = here.above[-2] if len(here.above) > 1 else None
     rows = table.elts if isinstance(table, ast.List) else []
     lists = [row.elts for row in rows if isinstance(row, ast.List) and len(row.elts) == len(rows)]
-    if len(lists) < len(rows) or not any(row is here.parent for row in rows):
+    i = next((k for k, row in enumerate(rows) if row is here.parent), None)
+    if i is None or len(lists) < len(rows):
         return
-    i, j = next(k for k, row in enumerate(rows) if row is here.parent), here.field
+    j = here.field
     places_ = [(k, m) for k in range(len(rows)) for m in range(k)]
     unlike = [(k, m) for k, m in places_ if text_of(lists[k][m]) != text_of(lists[m][k])]
     if unlike == [(max(i, j), min(i, j))]:
