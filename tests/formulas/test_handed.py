@@ -303,6 +303,7 @@ def test_of_numbers_alone_the_one_that_becomes_the_robot_s_own_is_told():
     ("entry", "text"),
     [
         ("V", "With zero gravity, V = 0"), ("M22", "For uniform rods M22 = m2*l2^2/3"), ("M22", "质心位于中点，M22 = m2*l2^2/4"),
+        ("x", "With both links level x = l1 + l2"), ("tau1", "Im Gleichgewicht gilt tau1 = 0"), ("x", "在对称位置 x = 0"),
         ("planar_position_determinant", r"In gestreckter Lage ist \det J = 0"),
     ],
 )  # fmt: skip
