@@ -19,10 +19,12 @@ from kinlab.doctor.entries import terms
 from kinlab.doctor.entries.definitions import Definitions
 from kinlab.doctor.entries.terms import Slip
 from kinlab.doctor.linkages.looked_up import Reference, reference_of
+from kinlab.doctor.text.habits import as_text
 from kinlab.doctor.text.line import Line, words_in
 from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import numbers_at
 from kinlab.errors import KinlabError
+from kinlab.formulas.text import canonical, parse
 from kinlab.host.language import _
 from kinlab.symbolic.vocabulary import vocabulary
 from kinlab.tolerances import TOLERANCES
@@ -57,7 +59,7 @@ def slips_in(
     some = [*_definitions(case, every, off, written)]
     while len(defined) < LIST and (one := _defined(case, every, off, some, written)) is not None:
         defined.append(one)
-        written = _defined_otherwise(written, one)
+        written = _defined_otherwise(case, written, one)
         off = _still_off(case, every, written)
         some = [*_definitions(case, every, off, written)]
     some = [] if defined else some
@@ -137,7 +139,7 @@ def _defined(
 
     for entry, some in definitions:
         for slip in some.single() if entry.label not in told else ():
-            left = _still_off(case, every, _defined_otherwise(written, slip))
+            left = _still_off(case, every, _defined_otherwise(case, written, slip))
             if len(left) >= len(off):
                 continue
             # of what is right by one change of a definition, only one of the formula is as simple
@@ -146,7 +148,19 @@ def _defined(
                 slip = slip.with_error(entry.error(slip.values, entry.engine))
                 found.append((len(left), slip))
                 told.add(entry.label)
-    return min(found, key=lambda one: (one[0], one[1].cost))[1] if found else None
+    return (
+        min(found, key=lambda one: (one[0], not _as_called(one[1]), one[1].cost))[1]
+        if found
+        else None
+    )
+
+
+def _as_called(slip: Slip) -> bool:
+    """Whether a name becomes what it is called: c12 the cosine of q1 + q2."""
+    assert slip.defined is not None
+    name, new = slip.defined
+    called = canonical(name)
+    return called.op in ("sin", "cos") and parse(new) == called
 
 
 def _with_more(
@@ -169,7 +183,7 @@ def _with_more(
         for slips in looked_for(some):
             changed = written
             for slip in slips:
-                changed = _defined_otherwise(changed, slip)
+                changed = _defined_otherwise(case, changed, slip)
             left = _still_off(case, every, changed)
             more = _per_entry(case, left, changed)
             if all(more):
@@ -220,15 +234,19 @@ def _is_simpler(slip: Slip, others: list[Slip], line: Line) -> bool:
     """Whether a slip in a definition says in fewer words what is wrong than others of the line.
 
     Of as many words the likelier; a factor that a name lacks was lost where the name was set, and
-    what would come instead of its sine, or of itself, is what it should be.
+    what would come instead of its sine, or of itself, is what it should be. A formula that is but
+    a name lacks nothing itself.
     """
     assert slip.defined is not None
     name, new = slip.defined
     lost = {*words_in(new)} - {*words_in(line.text.symbols[name])}
     of_name = not any(map(line.turns, lost))
+    whole = line.text.text == name
 
     def beaten(one: Slip) -> bool:
         if len(slip.kinds) == len(one.kinds):
+            if whole and one.kinds in (("missing term",), ("factor",)):
+                return True
             both = slip.kinds == one.kinds == (_LOST,) and of_name
             old = {*words_in(one.replaced[0])} - _FUNCTIONS if one.replaced else set()
             itself = old == {name} and one.kinds != ("sign",)
@@ -248,7 +266,7 @@ def _means_the_arm_s(
     if not own:
         return False
     here = _numbers_here(case)
-    texts = (written, _defined_otherwise(written, slip))
+    texts = (written, _defined_otherwise(case, written, slip))
     try:
         old, new = (one[entry.label].definition(name).values(here) for one in texts)
     except (KinlabError, KeyError):
@@ -267,12 +285,20 @@ def _number_of(case: Case, name: str) -> float:
     return float(values.get(name, 0.0))
 
 
-def _defined_otherwise(written: dict[str, Written], slip: Slip) -> dict[str, Written]:
-    """The texts with another definition of one of the writer's names."""
+def _defined_otherwise(case: Case, written: dict[str, Written], slip: Slip) -> dict[str, Written]:
+    """The texts with another definition of one of the writer's names.
+
+    With it come the names that books have for what is in it: lc3 for l3/2.
+    """
     assert slip.defined is not None
     name, new = slip.defined
+    table = table_of(case.robot)
+    meant = {} if table is None else vocabulary(table).others
+    books = {word: as_text(total) for word in words_in(new) if (total := meant.get(word))}
+    more = {word: told for word, told in books.items() if told != word}
     return {
-        label: replace(text, symbols={**text.symbols, name: new}) for label, text in written.items()
+        label: replace(text, symbols={**more, **text.symbols, name: new})
+        for label, text in written.items()
     }
 
 

@@ -255,6 +255,8 @@ def numbers_at(case: Case) -> dict[str, Array]:
         if argument in LETTERS:
             for i, column in enumerate(stack.T):
                 at[f"{LETTERS[argument]}{i + 1}"] = column
+        if argument == "tau":
+            at |= {f"tau{i + 1}": column for i, column in enumerate(stack.T)}
         if argument == "wrench":
             at |= dict(zip(WRENCH, stack.T, strict=True))
     return at

@@ -56,6 +56,7 @@ class FormulaFile:
         writing: what all of them say about the writing.
         numbers: names in the texts that stand for a number that was written.
         symbol_texts: the same for symbols; a number as its digits.
+        symbols_typed: symbols as they were typed, where that is a text.
         others: the file with another part of a chain of equalities for an entry's formula.
         remarks: what is to be said of how an entry was read.
         unread: words beside an entry's formula that may change what it claims.
@@ -73,6 +74,7 @@ class FormulaFile:
     others: tuple[FormulaFile, ...] = ()
     remarks: Mapping[str, str] = field(default_factory=dict)
     unread: Mapping[str, Doubt] = field(default_factory=dict)
+    symbols_typed: Mapping[str, str] = field(default_factory=dict)
 
 
 def formula_file(
@@ -182,6 +184,7 @@ def _read(
     entries: dict[str, str],
 ) -> FormulaFile:
     as_typed, writing = _opened(entries, symbols, place, writing)
+    typed_ = {name: value for name, value in symbols.items() if isinstance(value, str)}
     entries, symbols = _plain(as_typed, symbols, place, writing)
     return FormulaFile(
         place,
@@ -195,6 +198,7 @@ def _read(
         },
         as_typed,
         writing,
+        symbols_typed=typed_,
     )
 
 

@@ -135,7 +135,7 @@ def respelled(node: Node, spelling: Mapping[str, str], short: bool) -> Node:
     if short and node.op in ("sin", "cos"):
         inside = node.args[0].args if node.args[0].op == "add" else node.args
         if all(a.op == "sym" and re.fullmatch(r"q[1-9]", str(a.value)) for a in inside):
-            return tree.sym(node.op[0] + "".join(str(a.value)[1:] for a in inside))
+            return tree.sym(node.op[0] + "".join(sorted(str(a.value)[1:] for a in inside)))
     if node.op == "sym":
         return tree.sym(spelling.get(str(node.value), str(node.value)))
     if not node.args:

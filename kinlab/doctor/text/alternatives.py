@@ -313,7 +313,9 @@ def _beside(line: Line, angle: Node) -> Iterator[Node]:
     inside = tree.names(angle)
     for joint in (f"q{i + 1}" for i in range(line.names.n)):
         if joint not in inside:
-            yield tree.add(*terms, tree.sym(joint))
+            more = (*terms, tree.sym(joint))
+            plain = all(one.op == "sym" for one in more)
+            yield tree.add(*(sorted(more, key=str) if plain else more))
             yield tree.add(*terms, tree.mul(tree.num(-1), tree.sym(joint)))
 
 

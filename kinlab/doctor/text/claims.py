@@ -32,6 +32,7 @@ _VECTORS = {
     "gravity_torques": "g G D",
     "coriolis_torques": "c h V b cv",
     "momentum": "p",
+    "forward_dynamics": "qdd ddq",
 }
 _MATRICES = {
     "mass_matrix": "M D H B",

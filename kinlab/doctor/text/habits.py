@@ -63,6 +63,8 @@ def with_habits(file: FormulaFile, robot: Mechanism) -> FormulaFile:
     torques = [entry for entry, name in claims.items() if name.startswith("inverse_dynamics")]
     arrays = _of_arrays(file, known, bool(torques))
     summed = any(_SUMMED.search(text) for text in file.texts.values())
+    solved = any(name.startswith("forward_dynamics") for name in claims.values())
+    given = {f"tau{i + 1}" for i in range(robot.n)} if solved else set()
     new: dict[str, str] = {}
     for name in sorted(used - words - known - {*file.symbols}):
         plain = name.replace("_", "")
@@ -80,7 +82,7 @@ def with_habits(file: FormulaFile, robot: Mechanism) -> FormulaFile:
             found = "" if own not in words and own not in named.others else found
         if not found and robot.n == 1:  # m and l of the only link
             alone = f"{plain}1"
-            if tree.names(canonical(alone)) <= motion | words:
+            if tree.names(canonical(alone)) <= motion | words | given:
                 found = alone
             elif alone in named.others:
                 found = as_text(named.others[alone])

@@ -248,7 +248,14 @@ class Line:
         """A piece of a formula as the writer would write it."""
         node = self._summed(node) if self.sums else node
         plain = tree.to_text(respelled(node, self.spelling, self.short))
+        if self.short and any(map(self._means_another, words_in(plain))):
+            plain = tree.to_text(respelled(node, self.spelling, False))
         return re.sub(r" ([-+]) ", rf"{self.gap}\1{self.gap}", plain)
+
+    def _means_another(self, word: str) -> bool:
+        """Whether the writer has set c12 to anything but cos(q1 + q2)."""
+        own = word in self.text.symbols and SHORTHAND.fullmatch(word)
+        return bool(own) and self.meaning(word) != canonical(word)
 
     @cached_property
     def atoms(self) -> dict[str, Array]:

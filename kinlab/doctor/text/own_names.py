@@ -6,6 +6,7 @@ import ast
 import re
 from collections.abc import Collection, Iterator
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from kinlab.doctor.linkages.named_numbers import named_numbers
 from kinlab.doctor.text.joints import given_names
 from kinlab.doctor.text.meanings import Meanings, exact_angle, stands_for
 from kinlab.doctor.text.written import Written, literal
+from kinlab.errors import ExpressionError
 from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree, typed
 from kinlab.formulas.files import FormulaFile
@@ -46,6 +48,8 @@ def in_robot_names(text: Node, file: FormulaFile, robot: Mechanism, entry: str) 
         joints = range(1, robot.n + 1)
         known = {*words, *(f"{letter}{i}" for letter in LETTERS.values() for i in joints)}
         known |= {*given_names(entry, robot.table), *WRENCH}
+        if entry.startswith("forward_dynamics"):
+            known |= {f"tau{i}" for i in joints}
     place = f"{file.path}: {entry}"
     _refuse_large(text, file, place, {}, ())
     return _resolved(text, file, words, known, place)
@@ -260,14 +264,29 @@ def written_as(entry: str, node: Node, file: FormulaFile, robot: Mechanism) -> W
     inside = tree.names(file.formulas[entry])
     used = [note for name, note in rounded.items() if name in inside]
     written = file.texts[entry]
-    return Written(
-        entry, written, node, texts, known, tuple(used), file.numbers, typing_of(entry, file)
-    )
+    typing, of_definition = typing_of(entry, file), partial(_definition_typed, file)
+    rest = (known, tuple(used), file.numbers, typing, of_definition)
+    return Written(entry, written, node, texts, *rest)
+
+
+def _definition_typed(file: FormulaFile, name: str, text: str) -> Typing | None:
+    """A definition as it was typed; None where that is its plain text, or another's."""
+    given = file.symbols_typed.get(name)
+    if given is None:
+        return None
+    try:
+        found = _typing(given, name, file)
+    except ExpressionError:
+        return None
+    return found if found is not None and found.plain == text else None
 
 
 def typing_of(entry: str, file: FormulaFile) -> Typing | None:
     """An entry as it was typed; None where that is its plain text."""
-    given = file.as_typed[entry]
+    return _typing(file.as_typed[entry], entry, file)
+
+
+def _typing(given: str, entry: str, file: FormulaFile) -> Typing | None:
     core, dollars = typed.bare(given), typed.is_latex(given)
 
     def reads(line: str) -> str:

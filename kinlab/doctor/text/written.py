@@ -86,6 +86,10 @@ def literal(text: str) -> Literal:
     return Literal(text, value, 0.5 * 10.0 ** (int(found.group(3) or 0) - len(found.group(2))))
 
 
+def _as_it_is(_name: str, _text: str) -> Typing | None:
+    return None
+
+
 @dataclass(frozen=True, eq=False)
 class Written:
     """One formula as it was given.
@@ -99,6 +103,7 @@ class Written:
         rounded: what is to be said of names whose number is one of the robot's, rounded.
         numbers: names that stand in the text for a number that was written.
         typing: how it was typed, where that is not the text.
+        definition_typed: how the definition of a name was typed, where that is not its text.
     """
 
     entry: str
@@ -109,6 +114,7 @@ class Written:
     rounded: tuple[str, ...] = ()
     numbers: Mapping[str, str] = field(default_factory=dict)
     typing: Typing | None = None
+    definition_typed: Callable[[str, str], Typing | None] = _as_it_is
 
     def told(self, piece: str) -> str:
         """A piece of the text, or of what comes instead, as the writer types it."""
@@ -161,7 +167,8 @@ class Written:
 
     def definition(self, name: str) -> Written:
         """What one of these names stands for, in which no name may stand that is made of it."""
-        own = replace(self, entry=name, text=self.symbols[name], typing=None)
+        text = self.symbols[name]
+        own = replace(self, entry=name, text=text, typing=self.definition_typed(name, text))
         made = {x for x in self.symbols if name in replace(self, text=x)._used}
         return replace(own, symbols={x: y for x, y in self.symbols.items() if x not in made})
 
