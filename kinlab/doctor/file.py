@@ -21,6 +21,7 @@ from kinlab.doctor.linkages import as_right, five_bar
 from kinlab.doctor.linkages.mechanisms import mechanism_beside
 from kinlab.doctor.shapes import in_full
 from kinlab.doctor.text.claims import alone, claimed_of, named_alone, with_forces, with_wrench
+from kinlab.doctor.text.facts import holding
 from kinlab.doctor.text.habits import with_habits
 from kinlab.doctor.text.joints import joint_values
 from kinlab.doctor.text.line import words_in
@@ -86,7 +87,7 @@ def examine_file(path: str | Path, samples: int = 200, seed: int = 0) -> list[Di
     lines = read_lines(read_text(path, limit=_FILE_LIMIT), str(path))
     for _key, problem in lines.problems:
         raise problem
-    file = formula_file(lines.document, str(path))
+    file = read_formulas(lines.document, str(path))
     found = examine_formulas(file, robot_of(file), samples, seed)
     refuse_unjudged(found)
     return found
@@ -564,6 +565,24 @@ def _parts_given(
         texts = {label: formulas[label] for label in labels}
         shown = ", ".join(titles[label] for label in labels)
         yield examine(replace(case, index=index), hand, wanted, name, shown, texts)
+
+
+def read_formulas(document: Mapping[str, Any], path: str) -> FormulaFile:
+    """Formulas, and the clauses beside them that are true of the robot that they name.
+
+    Args:
+        document: as :func:`kinlab.formulas.files.formula_file` has it.
+        path: the file.
+
+    Raises:
+        FileError, ExpressionError: as there; a robot that there is not is told with its formulas.
+    """
+    name = document.get("robot")
+    try:
+        robot = mechanism_beside(name, path) if isinstance(name, str) and name else None
+    except KinlabError:
+        robot = None
+    return formula_file(document, path, holds=None if robot is None else holding(robot))
 
 
 def robot_of(file: FormulaFile) -> Mechanism:

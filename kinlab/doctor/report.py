@@ -25,6 +25,7 @@ from kinlab.doctor.examine import examine, prepare, real
 from kinlab.doctor.file import (
     as_judged,
     examine_formulas,
+    read_formulas,
     refuse_unjudged,
     require_sound,
     robot_of,
@@ -35,6 +36,7 @@ from kinlab.doctor.linkages.mechanisms import mechanism
 from kinlab.doctor.program.elsewhere import lines_elsewhere
 from kinlab.doctor.program.words import lines
 from kinlab.doctor.text.claims import claimed_of
+from kinlab.doctor.text.facts import holding
 from kinlab.errors import ExpressionError, KinlabError
 from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree
@@ -80,7 +82,8 @@ def diagnose(
     """
     if isinstance(function, str):
         arm = mechanism(robot)
-        file = formula_file({"robot": arm.name, "formulas": {quantity: function}}, "formula")
+        document = {"robot": arm.name, "formulas": {quantity: function}}
+        file = formula_file(document, "formula", holds=holding(arm))
         judged = examine_formulas(file, arm, whole(samples, "samples", FEWEST), seed_of(seed))
         refuse_unjudged(judged)
         wrong = [one for one in judged if not one.agrees]
@@ -187,7 +190,7 @@ def _of_sound(
     document: Mapping[str, Any], path: str, samples: int, seed: int
 ) -> tuple[list[Diagnosis], list[Unread]]:
     try:
-        return _judged(of_file(formula_file(document, path), samples, seed), path)
+        return _judged(of_file(read_formulas(document, path), samples, seed), path)
     except KinlabError as problem:
         lost = Unread(path, problem)
     bad = []
@@ -195,7 +198,7 @@ def _of_sound(
     claimed: dict[str, str] = {}
     for entry in entries_of(document):
         try:
-            one = formula_file(alone(document, entry), path)
+            one = read_formulas(alone(document, entry), path)
             try:
                 robot = robot_of(one)
             except KinlabError as missing:
@@ -212,7 +215,7 @@ def _of_sound(
     if not bad or not entries_of(left):
         return [], bad if len(bad) > 1 else [lost]
     try:
-        judged, more = _judged(of_file(formula_file(left, path), samples, seed), path)
+        judged, more = _judged(of_file(read_formulas(left, path), samples, seed), path)
         return judged, [*bad, *more]
     except KinlabError as problem:
         return [], [*bad, Unread(path, problem)]

@@ -29,6 +29,7 @@ from typing import Any
 
 from kinlab.errors import ExpressionError, FileError
 from kinlab.formulas import grids, tree, typed
+from kinlab.formulas.handed.clauses import Holds
 from kinlab.formulas.handed.equations import solved
 from kinlab.formulas.handed.prose import Doubt, left_over
 from kinlab.formulas.handed.reading import as_formula
@@ -78,7 +79,10 @@ class FormulaFile:
 
 
 def formula_file(
-    document: Mapping[str, Any], place: str, writing: typed.Hand | None = None
+    document: Mapping[str, Any],
+    place: str,
+    writing: typed.Hand | None = None,
+    holds: Holds | None = None,
 ) -> FormulaFile:
     """Reads the formulas of a TOML document.
 
@@ -91,6 +95,7 @@ def formula_file(
             (:mod:`kinlab.formulas.typed`). Entries of ``[latex]`` are LaTeX.
         place: the file, for messages.
         writing: what more of the same writer's formulas say; None looks at these.
+        holds: what is known of the robot, of clauses beside a formula that say something of it.
 
     Raises:
         FileError: the document holds no formulas, or what is none.
@@ -131,7 +136,7 @@ def formula_file(
     doubts: dict[str, tuple[str, list[tuple[str, str]]]] = {}
     for key, value in list(entries.items()):
         at = f"{place}: {key}"
-        entries[key], remarks[key], told = as_formula(_text(value, at), key, at)
+        entries[key], remarks[key], told = as_formula(_text(value, at), key, at, holds)
         doubts[key] = _text(value, at), told
         parts = typed.several(entries[key], key)
         if parts and not parts.keys() & entries.keys():

@@ -309,7 +309,8 @@ class Typing:
                     digits = f"{{{digits}}}"
                 return shown.replace(found[2], digits)
         if not self._latex:
-            return name
+            below = any(sign in self.typed for sign in "₀₁₂₃₄₅₆₇₈₉")
+            return head + digits.translate(_BELOW) if below else name
         braced = re.search(r"_\{\w\}", self.typed)
         return typeset.symbol(name) if braced else _BRACED.sub(r"_\1", typeset.symbol(name))
 

@@ -828,7 +828,10 @@ _POINT = {"x": "14", "y": "24", "z": "34", "px": "14", "py": "24", "pz": "34"}
 _ONE_NUMBER = {*"VPUTKL", "Ep", "Ek"}
 _ONE_NUMBER |= {"potential", "kinetic", "potential_energy", "kinetic_energy", "lagrangian"}
 """Entries that are one number by themselves, though V1 and V2 are parts of a vector."""
-_VECTORS = "gravity_torques inverse_dynamics forward_dynamics coriolis_torques momentum statics statics_tool"
+_VECTORS = (
+    "gravity_torques inverse_dynamics forward_dynamics coriolis_torques momentum statics "
+    "statics_tool"
+)
 _MATRICES = "mass_matrix coriolis_matrix jacobian jacobian_tool jacobian_spatial fk planar_jacobian"
 LONG = {*_MATRICES.split(), *_VECTORS.split()}
 TWO = {*"MHBJTRC", "Jv", "Jw", "coriolis_coefficients", *_MATRICES.split()}

@@ -155,7 +155,7 @@ def test_a_slip_in_a_definition_comes_before_two_terms_more_in_the_formula() -> 
 def test_a_centre_by_a_letter_of_ones_own_is_told_by_it() -> None:
     text = "β = m₂ l₁ r₂, δ = I₂ + m₂ l₂²; M₁₂ = δ + β cos θ₂"
     found = kl.diagnose("planar2r_rods", "M12", text)
-    assert found.causes and found.causes[0].sentence.startswith("delta: l2 should be r2"), str(
+    assert found.causes and found.causes[0].sentence.startswith("delta: l₂ should be r₂"), str(
         found
     )
 

@@ -37,6 +37,7 @@ from kinlab.doctor.marking.words import for_student
 from kinlab.doctor.program.words import WrongLines
 from kinlab.doctor.shapes import in_full
 from kinlab.doctor.text.claims import claimed_of
+from kinlab.doctor.text.facts import holding
 from kinlab.doctor.text.own_names import in_robot_names
 from kinlab.errors import ExpressionError, KinlabError
 from kinlab.fivebar import FiveBar
@@ -116,7 +117,8 @@ def _one(sheet: Sheet, question: Question, submission: Submission) -> Outcome:
     try:
         entries = as_entries(question, given, sheet)
         document = {"robot": "the sheet's", "symbols": submission.symbols, "formulas": entries}
-        file = formula_file(document, question.id, submission.writing)
+        holds = holding(robot_for(sheet, submission.student))
+        file = formula_file(document, question.id, submission.writing, holds)
         if question.quantity:
             outcome = _with_engine(sheet, question, submission.student, file)
         else:

@@ -3,6 +3,7 @@
 ==============  ===================================================================================
 module          what it holds
 ==============  ===================================================================================
+``clauses``     Clauses that say what may be true of an arm: ``gravity acts along -y``
 ``code``        Formulas as they stand in programs: ``lambda``, ``def``, ``self.l1``, comments
 ``columns``     A column of names before a column of formulas
 ``constants``   A free constant behind a potential
@@ -14,7 +15,7 @@ module          what it holds
 ``reading``     All that is done to a formula as it is handed in, in the order in which it is done
 ``sentences``   The equations in a text with sentences
 ``units``       Units behind numbers and formulas
-``vocabulary``  Words, and clauses of names, that say nothing of what a formula claims
+``vocabulary``  Words that say nothing of what a formula claims
 ``words``       Words around a formula
 ==============  ===================================================================================
 """

@@ -95,7 +95,7 @@ _ELSEWHERE = re.compile(
 """Moments of inertia about another point than the robot's are."""
 _SCALED = re.compile(
     r"\bin (?:mm|cm|dm|km|inch(?:es)?|feet|grams?|tonnes?|(?:milli|centi)met(?:re|er)s?"
-    r"|(?:milli|zenti)metern?|gramm)\b|毫米|厘米|英寸",
+    r"|(?:milli|zenti)metern?|gramm)\b|\bk?N\s?[·.*]?\s?(?:mm|cm)\b|\bkN\s?m?\b|毫米|厘米|英寸",
     re.IGNORECASE,
 )
 """Units in which the robot's numbers are not."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from kinlab.formulas.handed.clauses import Holds, without_clauses
 from kinlab.formulas.handed.code import without_code
 from kinlab.formulas.handed.columns import of_column
 from kinlab.formulas.handed.constants import without_constant
@@ -12,7 +13,6 @@ from kinlab.formulas.handed.letters import plain_letters, siciliano_s_letters, w
 from kinlab.formulas.handed.prose import doubtful
 from kinlab.formulas.handed.rates import plain_rates
 from kinlab.formulas.handed.units import without_units
-from kinlab.formulas.handed.vocabulary import without_glosses
 from kinlab.formulas.handed.words import without_words
 
 _ALONE = re.compile(
@@ -29,15 +29,27 @@ _MEANS = re.compile(
 )
 """What explains a name behind a formula without saying where: ``x = ..., l1 is the length``."""
 _GAP = re.compile(r"\s{12,}")
+_NUMBERS = re.compile(
+    r"^\s*((?:\$?\\?[A-Za-z]\w*\{?\w*\}?\s*=\s*\d[\d.]*[^=:：,，;；\n]{0,12}"
+    r"(?:[,，;；]\s*|\s+(?:and|und)\s+|\s*[和与]\s*|\s*(?=[:：])))+)[:：]\s*(?=\S)"
+)
+"""Numbers of names in front of a formula: ``l1 = 0.5 m, l2 = 0.4 m: x = ...``."""
+_BETWEEN = re.compile(r"[,，;；]\s*|\s+(?:and|und)\s+|\s*[和与]\s*")
+_REMARK = re.compile(r"^(\s*\([A-Za-z]{3,}[ ,.][^()=+*/^]*\))\s+(?=\\?[A-Za-z])")
+"""A remark in front: ``(see Craig, section 6.7)``."""
+_ON_A_LINE = re.compile(r"\n\s*(?=(?:with|mit)\s)")
 
 
-def as_formula(text: str, entry: str, place: str) -> tuple[str, str, list[tuple[str, str]]]:
+def as_formula(
+    text: str, entry: str, place: str, holds: Holds | None = None
+) -> tuple[str, str, list[tuple[str, str]]]:
     """The formula in what was handed in, as :mod:`kinlab.formulas.typed` reads it.
 
     Args:
         text: as typed, with the words, code and units around it.
         entry: what the formula is asked for.
         place: what to put in front of a message.
+        holds: what is known of the arm, of clauses that say something of it.
 
     Returns:
         The formula, nothing changed in it where nothing is around it; what is to be said of how it
@@ -45,10 +57,14 @@ def as_formula(text: str, entry: str, place: str) -> tuple[str, str, list[tuple[
         :func:`kinlab.formulas.handed.prose.doubtful` has them.
 
     Raises:
-        ExpressionError: what can be read in two ways.
+        ExpressionError: what can be read in two ways, or a clause that is not so.
     """
     text = _GAP.sub(lambda gap: "\n" if "\n" in gap[0] else " ", plain_letters(text, place))
-    text = _MEANS.sub(r"\1, where ", _SCORE.sub(" ", without_glosses(text)), count=1)
+    if holds is not None:
+        text = without_clauses(text, place, holds)
+    text = _ON_A_LINE.sub(" ", _REMARK.sub(r"\1: ", text))
+    text = _NUMBERS.sub(lambda found: f"{_BETWEEN.sub('; ', found[1]).rstrip('; ')}; ", text)
+    text = _MEANS.sub(r"\1, where ", _SCORE.sub(" ", text), count=1)
     doubts = doubtful(text, entry)
     text, marks = without_marks(siciliano_s_letters(text))
     text = without_code(text, bool(_ALONE.fullmatch(entry)))

@@ -267,7 +267,7 @@ def _matrices(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         return
     if isinstance(here.parent, ast.Return) and shape[0] == _TWIST and isinstance(node, ast.Name):
         yield here.instead(_other_half_first(node), "order", 1.1)
-    if isinstance(node, ast.Name) and len(shape) > 2:
+    if (isinstance(node, ast.Name) and len(shape) > 2) or _is_unpacked(here):
         return
     beside = scope.factors.get(id(statement_of(here.above)), set())
     for size in {shape[0], shape[-1]}:
@@ -289,6 +289,12 @@ def _matrices(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
                     new = ast.BinOp(node, ast.MatMult(), turned)
                     yield here.instead(new, "missing matrix", cost)
                 cost += 0.02
+
+
+def _is_unpacked(here: Here) -> bool:
+    """Whether it is set to several names at once: ``u, w = leg(i)``, of which none is a row."""
+    targets = here.parent.targets if isinstance(here.parent, ast.Assign) else []
+    return any(isinstance(one, ast.Tuple | ast.List) for one in targets)
 
 
 def _other_half_first(node: ast.Name) -> ast.expr:

@@ -37,9 +37,11 @@ _ALIKE = 0.15
 """Cost beyond the first's of repairs that nothing else tells from it."""
 _TIED, _TIED_BESIDE = 0.08, 0.02
 """Of these, costs that are one; where the others are the same edits."""
-_NEXT, _GAINED, _LOST = 0.07, 0.05, 0.12
+_NEXT, _GAINED, _LOST = 0.07, 0.06, 0.12
 """What an edit may cost more that leaves more of the program as a textbook has it: at most, and
 for each statement; what it must cost less for each that it spoils."""
+_COMPARED = 5
+"""Single edits in place of one of which that is looked at."""
 _NAMED = 3
 """Repairs that are kept."""
 _STEPS = 3
@@ -300,13 +302,15 @@ class _Several:
                 with changed(search.trial, others):
                     here = _beside(search, others)
                     cost = here.likely(edit)
-                    better = here.singles(cost + _NEXT)[:1]
+                    better = here.singles(cost + _NEXT)[:_COMPARED]
             except NoProgramError:
                 continue
-            for one in better:
+            for k, one in enumerate(better):
                 more = search.left_right((*others, one.edits[-1])) - right
+                if k and more <= 0:
+                    continue  # the first is the likeliest of those that leave no more right
                 if here.likely(one.edits[-1]) < cost + (_GAINED if more > 0 else _LOST) * more:
-                    return self.settled(search, better, turns + 1)
+                    return self.settled(search, better[k:], turns + 1)
         return found
 
 
