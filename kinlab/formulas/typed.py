@@ -817,6 +817,8 @@ _IN_BOOKS = (
     "V C H N B cv coriolis_torques",
     "p momentum",
     "qdd ddq forward_dynamics",
+    "q th theta inverse_kinematics inverse_kinematics_xy inverse_kinematics_xyphi "
+    "inverse_kinematics_xyz inverse_kinematics_xyzphi",
 )
 """What books call the same thing: Spong's d11 and phi1, Craig's V, Siciliano's B."""
 _MEANT = tuple({word.lower() for word in group.split()} for group in _IN_BOOKS)

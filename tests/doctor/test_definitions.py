@@ -184,3 +184,48 @@ def test_a_name_of_the_arm_s_that_is_set_wrongly_is_told_where_it_is_set(robot, 
 )  # fmt: skip
 def test_a_name_that_is_defined_as_it_is_called_is_not_at_fault(robot, entry, text, said) -> None:
     assert said in kl.diagnose(robot, entry, text).causes[0].sentence
+
+
+WEIGHTS = """c1 = cos(q1); c12 = cos(q1+q2); c123 = cos(q1+q2+q3);
+G3 = 0.5*m3*g*l3*c123;
+G2 = G3 + (0.5*m2 + m3)*g*l2*c12;
+G1 = G2 + (0.5*m1 + m2 + m3)*g*l1*c1;
+G = [G1; G2; G3];"""
+
+
+def test_slips_in_three_definitions_of_one_another_are_told_where_they_are() -> None:
+    """A centre's name that comes with a repair has a meaning; c12 is put right where it is set."""
+    text = WEIGHTS.replace("c12 = cos(q1+q2)", "c12 = cos(q2)").replace("0.5*m3*g", "m3*g")
+    text = text.replace("(0.5*m1 + m2 + m3)", "(0.5*m1 + m2)")
+    found = kl.diagnose("planar3r", "gravity_torques", text)
+    (cause,) = found.causes
+    assert sorted(cause.places) == ["G1", "G3", "c12"], str(found)
+    assert "c12: cos(q2) should be cos(q1+q2)" in cause.sentence
+    assert "the term m3 is missing in (0.5*m1 + m2)" in cause.sentence
+    assert not kl.diagnose("planar3r", "gravity_torques", WEIGHTS).causes
+
+
+def test_a_definition_is_told_in_its_writer_s_typing() -> None:
+    text = (
+        "lc2 = l2/2; M12 = I2 + m2*(lc2^2 + l1*lc2*cos(q2)); M22 = I1 + m2*lc2^2; "
+        "M11 = I1 + I2 + m1*l1^2/4 + m2*(l1^2 + lc2^2 + 2*l1*lc2*cos(q2)); M = [M11 M12; M12 M22]"
+    )
+    found = kl.diagnose("planar2r_rods", "mass_matrix", text)
+    assert "I1 should be I2 in I1 + m2*lc2^2" in found.causes[0].sentence, str(found)
+    assert found.causes[0].typed["M22"] == "I2 + m2*lc2^2"
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "text", "told"),
+    [
+        ("plotclock", "fivebar_rod_length", "r1 = sqrt((x - e - l1*cos(theta1))^2 + (y - l1*sin(theta1))^2); r2 = sqrt((x + e - l1*cos(theta2))^2 + (y - l1*sin(theta2))^2)", ""),
+        ("isotropic", "fivebar_rod_length[0]", "sqrt((x + e - l1*cos(theta1))^2 + (y - l1*sin(theta1))^2)", "+ e should be - e"),
+        ("single_link", "forward_dynamics[0]", "qdd1 = (tau1 - 1/2*m1*g*l1*cos(q1))/(1/3*m1*l1^2)", ""),
+        ("single_link", "forward_dynamics", "qdd = (tau - m*g*lc*cos(q))/(I + m*lc^2)", ""),
+        ("single_link", "forward_dynamics", "qdd = (tau + m*g*lc*cos(q))/(I + m*lc^2)", "gravity"),
+    ],
+)  # fmt: skip
+def test_lengths_of_rods_and_forward_dynamics_are_read(robot, entry, text, told) -> None:
+    found = kl.diagnose(robot, entry, text)
+    assert found.agrees is not bool(told), str(found)
+    assert told in "".join(cause.sentence for cause in found.causes)

@@ -430,8 +430,34 @@ def test_answers_that_are_no_rows_are_refused_in_plain_words() -> None:
     for answer in ([(0.1, 0.2), None], [(0.1, 0.2), (0.1,)], {"up": (0.1, 0.2)}):
         with pytest.raises(kl.KinlabError, match="rows of 2 numbers; a solution that does not"):
             kl.diagnose("planar2r", XY, lambda x, y, answer=answer: answer, samples=20)
-    with pytest.raises(ExpressionError, match="2 signs of equality.*in a file for kinlab check"):
-        kl.diagnose("planar2r", XY, "q1 = atan2(y, x)\nq2 = 0")
+
+
+SOLVED = """c2 = (x^2 + y^2 - l1^2 - l2^2)/(2*l1*l2)
+s2 = sqrt(1 - c2^2)
+q1 = atan2(y, x) - atan2(l2*s2, l1 + l2*c2)
+q2 = atan2(s2, c2)"""
+
+
+def test_a_whole_solution_may_be_several_lines() -> None:
+    found = kl.diagnose("planar2r", XY, SOLVED, samples=60)
+    assert found.agrees and "of the 2 branches of the closed form it gives 1" in found.remarks
+    assert not kl.diagnose("planar2r", XY, "q1 = atan2(y, x)\nq2 = 0", samples=60).agrees
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("- l1^2 - l2^2", "+ l1^2 - l2^2", "l1**2 with the opposite sign in the cosine of q2"),
+        ("1 - c2^2", "1 + c2^2", "c2**2 with the opposite sign in the sine of q2"),
+        ("l2*s2, l1", "l1*s2, l1", "l1 for l2 in atan2(l2*s2, l1 + l2*c2), in the angle q1"),
+        ("l1 + l2*c2", "l2 + l1*c2", "l1 and l2 exchanged in l1 + l2*c2, in the angle q1"),
+        ("atan2(s2, c2)", "atan2(c2, s2)", "atan2(c2, s2) for atan2(s2, c2)"),
+    ],
+)
+def test_a_slip_in_one_of_its_lines_is_told(old, new, told) -> None:
+    assert SOLVED.count(old) == 1
+    found = kl.diagnose("planar2r", XY, SOLVED.replace(old, new), samples=60)
+    assert found.causes and told in found.causes[0].sentence, str(found)
 
 
 def clipped(most: float, l1: float, l2: float, jump: float = np.inf) -> Callable[..., Any]:

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from kinlab.doctor.bytecode.syntax import factors, nodes
 from kinlab.doctor.derivations.operations import Make
-from kinlab.doctor.derivations.walk import Program, Step, again
+from kinlab.doctor.derivations.walk import Assignment, Program, Step, again
 from kinlab.doctor.derivations.words import is_sum, minus, name_of, spelt, times
 from kinlab.host.language import _
 
@@ -97,7 +97,7 @@ def at_difference(node: ast.BinOp, step: Make) -> Iterator[Step]:
 
 
 def exchanged(of: Program) -> Iterator[Step]:
-    """Two names each for the other, in one line and in every line."""
+    """Two names each for the other, in one sum, in one line and in every line."""
     named = [
         (line, [node for node in nodes(line.statement.value) if isinstance(node, ast.Name)])
         for line in of.lines
@@ -114,9 +114,26 @@ def exchanged(of: Program) -> Iterator[Step]:
                 does = _("has {one} and {two} exchanged in {line}")
                 said = does.format(one=names[0], two=names[1], line=_(line.about))
                 yield Step("exchanged", said, tuple(edits), 1.02, about=line.about)
+                yield from _in_a_sum(line, edits, names)
         if len({x.id for x, _new in every if isinstance(x, ast.Name)}) == 2:
             does = _("has {one} and {two} exchanged in every line")
             yield Step("exchanged", does.format(one=names[0], two=names[1]), tuple(every), 1.03)
+
+
+def _in_a_sum(
+    line: Assignment, edits: Sequence[tuple[ast.Name, ast.expr]], names: Sequence[str]
+) -> Iterator[Step]:
+    """The same where the line has them elsewhere as well: ``l2 + l1*c2`` beside ``l2*s2``."""
+    for whole in nodes(line.statement.value):
+        if not isinstance(whole, ast.expr) or not is_sum(whole):
+            continue
+        inside = {id(node) for node in nodes(whole)}
+        some = [pair for pair in edits if id(pair[0]) in inside]
+        if len(some) == len({x.id for x, _new in some}) == 2 < len(edits):
+            does = _("has {one} and {two} exchanged in {term}, in {line}").format(
+                one=names[0], two=names[1], term=spelt(whole), line=_(line.about)
+            )
+            yield Step("exchanged", does, tuple(some), 1.04, about=line.about)
 
 
 def of_angles(of: Program) -> Iterator[Step]:

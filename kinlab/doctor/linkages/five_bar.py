@@ -45,6 +45,8 @@ _OF_CRANKS = {
     "Thetad": "fivebar_worst_rate",
     "Tmax": "fivebar_worst_torque",
 }
+_ROD = re.compile("(?:r|rho)([12])")
+"""What the length of a leg's rod is called, where the cranks' angles are given."""
 _OF_SERVOS = {
     "j": "servo_ratio",
     "IMmin": "servo_inertias[0]",
@@ -81,6 +83,8 @@ def claimed(entry: str) -> str:
     )
     if plain in _OF_SERVOS:
         return _OF_SERVOS[plain]
+    if length := _ROD.fullmatch(plain):
+        return f"fivebar_rod_length[{int(length[1]) - 1}]"
     if matrix := _MATRIX.fullmatch(plain):
         return f"{_MATRICES[matrix[1]]}[{int(matrix[2]) - 1},{int(matrix[3]) - 1}]"
     if (bar := _BAR.fullmatch(plain)) and not (bar[2] and bar[4]):
@@ -145,6 +149,7 @@ def whole_claimed(entry: str) -> str:
 READ = {
     "fivebar_loop": (0, 2, 0),
     "fivebar_leg_loop": (0, 2, 0),
+    "fivebar_rod_length": (0, 1, 0),
     "fivebar_equation": (0, 2, 0),
     "fivebar_leg_equation": (0, 2, 0),
     "fivebar_angles": (0, 0, 0),

@@ -90,7 +90,8 @@ def _is_of_joint_one(claim: Claim) -> bool | None:
 def _is_own(claim: Claim) -> bool | None:
     """Whether the numbers in it are those of its names: m2 of link 2."""
     own = {int(found) for name in claim.names for found in re.findall(r"\d", name)}
-    return {number for _kind, number in claim.refs} <= own or not claim.refs
+    told = {number for _kind, number in claim.refs}
+    return told <= own if own or not told else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,8 +225,8 @@ class _Facts:
         some = self._of(claim)
         angle = claim.words & {"angle", "angles", "winkel", "gelenkwinkel", "转角", "角", "关节角"}
         if any(not self._turns(k) for k in some) and angle:
-            return None
-        return _is_own(claim) or None
+            return False if _is_own(claim) else None
+        return _is_own(claim)
 
     def slide(self, claim: Claim) -> bool | None:
         some = self._of(claim)
@@ -263,10 +264,10 @@ class _Facts:
         return True
 
     def centres_coordinates(self, claim: Claim) -> bool | None:
-        return _is_own(claim) or None
+        return _is_own(claim)
 
     def inertia(self, claim: Claim) -> bool | None:
-        return _is_own(claim) or None
+        return _is_own(claim)
 
     def point_masses(self, claim: Claim) -> bool | None:
         return self._each(claim, self._is_point)
@@ -280,7 +281,7 @@ class _Facts:
     def length(self, claim: Claim) -> bool | None:
         for name in claim.names:
             k = int(name[-1])
-            if name[0] == "l" and not _is_own(claim):
+            if _is_own(claim) is False:
                 return False
             if name[0] == "l" and (not 1 <= k <= self.table.n or not self._turns(k)):
                 return None

@@ -178,7 +178,8 @@ def _with_signs(tokens: list[_Token]) -> list[_Token]:
         before = found[-2] if len(found) > 1 else None
         axis = one.kind == "word" and _AXIS.fullmatch(one.text)
         if axis and last is not None and last.kind == "sign" and last.text in "-−+":
-            free = before is None or (before.kind in ("word", "han") and len(before.text) > 1)
+            words = before is not None and before.kind in ("word", "han")
+            free = before is None or (words and (before.kind == "han" or len(before.text) > 1))
             if (free or (before and before.kind == "mark")) and last.end == one.start:
                 sign = "" if last.text == "+" else "-"
                 found[-1] = _Token("word", f"{sign}{one.text}", last.start, one.end)

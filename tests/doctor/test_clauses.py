@@ -1,0 +1,160 @@
+"""Clauses beside a formula that say something of the arm: true ones are nothing, others refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import kinlab as kl
+from kinlab.doctor.file import examine_file
+from kinlab.doctor.text.facts import holding
+from kinlab.errors import ExpressionError
+from kinlab.formulas.handed.clauses import without_clauses
+
+ARMS = ("single_link", "planar2r", "planar2r_rods", "planar3r", "spatial3r", "scara", "stanford")
+G2 = "g2 = m2*g*l2*cos(q1+q2)"
+X2 = "x = l1*cos(q1) + l2*cos(q1+q2)"
+M22 = "M22 = I2 + m2*lc2^2"
+Z4 = "z = d1 - q3"
+LOOP = "(x - e - l1*cos(theta1))^2 + (y - l1*sin(theta1))^2 - l2^2"
+
+
+@pytest.mark.parametrize("name", ARMS)
+def test_which_way_gravity_acts_is_what_pinocchio_has(name) -> None:
+    """Of six axes the one, or as many as Pinocchio's model says, in four ways to say it."""
+    robot = kl.load(name)
+    down = robot.model.gravity.linear / np.linalg.norm(robot.model.gravity.linear)
+    for k, letter in enumerate("xyz"):
+        for sign, word in ((1.0, "positive"), (-1.0, "negative")):
+            axis = f"{'-' if sign < 0 else ''}{letter}"
+            so = bool(np.isclose(down[k], sign))
+            for clause in (
+                f"gravity acts along {axis}",
+                f"gravity points in the {word} {letter} direction",
+                f"重力沿 {axis} 方向",
+            ):
+                assert _is_true(robot, clause) is so, clause
+        assert _is_true(robot, f"the {letter} axis points downwards") is bool(down[k] > 0.9)
+        assert _is_true(robot, f"${letter}$ points upwards") is bool(down[k] < -0.9)
+
+
+@pytest.mark.parametrize("name", ARMS)
+def test_which_joints_slide_is_what_pinocchio_has(name) -> None:
+    robot = kl.load(name)
+    for i, joint in enumerate(list(robot.model.joints)[1:], 1):
+        slides = joint.shortname().startswith("JointModelP")
+        assert (_is_true(robot, f"q{i} is the stroke of joint {i}") is True) is slides
+        assert (_is_true(robot, f"q{i} is the angle of joint {i}") is True) is not slides
+        if i > 1:
+            said = f"q{i} is the angle of link {i} relative to link {i - 1}"
+            assert (_is_true(robot, said) is True) is not slides
+
+
+def _is_true(robot, clause: str) -> bool | None:
+    """What becomes of a clause: left out, refused, or left where it stands."""
+    text = f"tau1 = a + b, where {clause}"
+    try:
+        left = without_clauses(text, "here", holding(robot))
+    except ExpressionError:
+        return False
+    assert left.startswith("tau1 = a + b")
+    return None if left == text else True
+
+
+TRUE = [
+    ("planar2r", "g2", f"{G2}, with gravity along -y and g = 9.81 m/s^2"),
+    ("planar2r", "g2", f"{G2} where l1, l2 are the link lengths and m2 is a point mass at its end"),
+    ("planar2r", "g2", f"Der Arm bewegt sich in der vertikalen Ebene: {G2}"),
+    ("planar2r", "x", f"{X2}, where q1 is measured from the x axis"),
+    ("planar2r", "x", f"{X2} (q1, q2 in radians, x in m)"),
+    ("planar2r", "x", f"{X2}，其中 θ2 是连杆2相对连杆1的转角，y 轴竖直向上"),
+    ("planar2r", "V", "With the y axis pointing up: V = (m1+m2)*g*l1*sin(q1) + m2*g*l2*sin(q1+q2)"),
+    ("planar2r_rods", "M22", f"{M22}, where lc2 = l2/2 is the distance from joint 2 to the centre of mass of link 2"),
+    ("planar2r_rods", "M22", f"{M22}, wobei I2 das Trägheitsmoment um den Schwerpunkt ist"),
+    ("planar2r_rods", "M22", "For uniform rods M22 = m2*l2^2/3, because the centre of mass lies at l2/2"),
+    ("scara", "z", f"{Z4}, where q3 is the stroke of the quill, positive downwards"),
+    ("stanford", "gravity_torques[2]", "The third joint slides, so g3 = (m3+m4+m5+m6)*g*cos(q2)"),
+    ("isotropic", "fivebar_loop[0]", f"{LOOP}, where l1 is the length of the cranks, l2 that of the rods and 2e the distance of the motor axes"),
+    ("planar3r", "planar_pose[0]", "x = l1*cos(q1) + l2*cos(q1+q2) + l3*cos(q1+q2+q3) holds for all q1, q2, q3"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("robot", "entry", "text"), TRUE)
+def test_what_is_true_of_the_robot_says_nothing(robot, entry, text) -> None:
+    found = kl.diagnose(robot, entry, text)
+    assert found.agrees and not any("were not read" in one for one in found.remarks), str(found)
+
+
+@pytest.mark.parametrize(("robot", "entry", "text"), TRUE)
+def test_beside_what_is_true_a_wrong_formula_is_judged(robot, entry, text) -> None:
+    wrong = text
+    for old, new in (("cos(q1", "sin(q1"), ("sin(q1)", "cos(q1)"), ("I2 +", "I2 -"), ("- q3", "+ q3"), ("l2^2/3", "l2^2/4"), ("cos(q2)", "sin(q2)"), ("cos(theta1)", "sin(theta1)")):  # fmt: skip
+        if old in text:
+            wrong = text.replace(old, new, 1)
+            break
+    assert wrong != text
+    assert not kl.diagnose(robot, entry, wrong).agrees
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "text", "words"),
+    [
+        ("planar2r", "g2", f"{G2}, with gravity along -x", "gravity along -x"),
+        ("planar2r", "g2", f"The arm moves in a horizontal plane: {G2}", "horizontal plane"),
+        ("planar2r", "x", f"{X2}, with y downwards", "y downwards"),
+        ("planar2r", "x", f"{X2}, where l1 is the length of link 2", "l1 is the length of link 2"),
+        ("planar2r", "M22", "For uniform rods M22 = m2*l2^2/3", "uniform rods"),
+        ("planar2r_rods", "M22", "M22 = m2*l2^2/3, with m2 concentrated at the end of link 2", "m2 concentrated"),
+        ("planar2r_rods", "M22", f"{M22}, where I2 is the inertia of link 1 about its centre of mass", "I2 is the inertia"),
+        ("scara", "z", f"{Z4}, where q3 is positive upwards", "q3 is positive upwards"),
+        ("stanford", "gravity_torques[2]", "g3 = (m3+m4+m5+m6)*g*cos(q2), where q3 is the angle of joint 3", "angle of joint 3"),
+        ("spatial3r", "z", "z = xt*sin(q3), where xt is the distance of the tool from joint 2", "xt is the distance"),
+        ("isotropic", "fivebar_loop[0]", f"{LOOP}, where e is the distance between the two motors", "e is the distance"),
+        ("isotropic", "fivebar_loop[0]", f"{LOOP}, where l2 is the length of the cranks", "l2 is the length"),
+    ],
+)  # fmt: skip
+def test_what_is_not_so_is_refused_by_its_words(robot, entry, text, words) -> None:
+    with pytest.raises(ExpressionError, match="is not so of this robot") as problem:
+        kl.diagnose(robot, entry, text)
+    assert words in str(problem.value)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "angles in degrees",
+        "lengths in mm",
+        "I2 about joint 2",
+        "where lc2 is half the length of link 2, measured from the end",
+        "where q2 is the absolute angle of link 2",
+        "without the rotor",
+    ],
+)
+def test_what_is_no_known_clause_stays_in_doubt(words) -> None:
+    """Refused, or said beside the verdict: never passed over."""
+    try:
+        found = kl.diagnose("planar2r_rods", "M22", f"{M22}, {words}")
+    except ExpressionError:
+        return
+    assert any("were not read" in one for one in found.remarks), str(found)
+
+
+def test_names_that_stay_behind_keep_the_word_that_opens_them() -> None:
+    holds = holding(kl.load("planar2r"))
+    text = "x = L*cos(q1), where the y axis points up, L = 0.5 and gravity acts along -y"
+    assert without_clauses(text, "here", holds) == "x = L*cos(q1), where L = 0.5"
+
+
+def test_no_clause_is_looked_for_in_a_text_without_end() -> None:
+    text = "x = l1*cos(q1), " + "gravity along x and " * 400
+    assert without_clauses(text, "here", holding(kl.load("planar2r"))) == text
+
+
+def test_clauses_are_held_against_the_robot_of_a_file(tmp_path) -> None:
+    path = tmp_path / "mine.toml"
+    lines = f'robot = "planar2r"\n[formulas]\ng2 = "{G2}, where gravity acts along {{}}"\n'
+    path.write_text(lines.format("-y"), encoding="utf-8")
+    assert all(found.agrees for found in examine_file(path))
+    path.write_text(lines.format("+x"), encoding="utf-8")
+    with pytest.raises(ExpressionError, match="is not so of this robot"):
+        examine_file(path)
