@@ -35,7 +35,7 @@ from kinlab.doctor.linkages.as_right import times
 from kinlab.doctor.linkages.mechanisms import mechanism
 from kinlab.doctor.program.elsewhere import lines_elsewhere
 from kinlab.doctor.program.words import lines
-from kinlab.doctor.text.claims import claimed_of
+from kinlab.doctor.text.claims import VECTORS, claimed_of
 from kinlab.doctor.text.facts import holding
 from kinlab.errors import ExpressionError, KinlabError
 from kinlab.fivebar import FiveBar
@@ -82,7 +82,9 @@ def diagnose(
     """
     if isinstance(function, str):
         arm = mechanism(robot)
-        document = {"robot": arm.name, "formulas": {quantity: function}}
+        only = not isinstance(arm, FiveBar) and arm.n == 1 and quantity in VECTORS
+        entry = f"{quantity}[0]" if only else quantity
+        document = {"robot": arm.name, "formulas": {entry: function}}
         file = formula_file(document, "formula", holds=holding(arm))
         judged = examine_formulas(file, arm, whole(samples, "samples", FEWEST), seed_of(seed))
         refuse_unjudged(judged)

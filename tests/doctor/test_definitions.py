@@ -215,6 +215,12 @@ def test_a_definition_is_told_in_its_writer_s_typing() -> None:
     assert found.causes[0].typed["M22"] == "I2 + m2*lc2^2"
 
 
+SOLVED = """M11 = (m1+m2)*l1^2 + m2*l2^2 + 2*m2*l1*l2*cos(q2); M12 = m2*l2^2 + m2*l1*l2*cos(q2);
+M22 = m2*l2^2; D = M11*M22 - M12^2;
+n1 = tau1 + m2*l1*l2*sin(q2)*(2*qd1*qd2 + qd2^2) - (m1+m2)*g*l1*cos(q1) - m2*g*l2*cos(q1+q2);
+n2 = tau2 - m2*l1*l2*sin(q2)*qd1^2 - m2*g*l2*cos(q1+q2);"""
+
+
 @pytest.mark.parametrize(
     ("robot", "entry", "text", "told"),
     [
@@ -222,7 +228,12 @@ def test_a_definition_is_told_in_its_writer_s_typing() -> None:
         ("isotropic", "fivebar_rod_length[0]", "sqrt((x + e - l1*cos(theta1))^2 + (y - l1*sin(theta1))^2)", "+ e should be - e"),
         ("single_link", "forward_dynamics[0]", "qdd1 = (tau1 - 1/2*m1*g*l1*cos(q1))/(1/3*m1*l1^2)", ""),
         ("single_link", "forward_dynamics", "qdd = (tau - m*g*lc*cos(q))/(I + m*lc^2)", ""),
-        ("single_link", "forward_dynamics", "qdd = (tau + m*g*lc*cos(q))/(I + m*lc^2)", "gravity"),
+        ("single_link", "inverse_dynamics", "tau1 = (I1 + m1*lc1^2)*qdd1 + m1*g*lc1*cos(q1)", ""),
+        ("single_link", "forward_dynamics", r"\ddot q_1 = \frac{\tau_1 - \frac12 m_1 g l_1 \sin q_1}{\frac13 m_1 l_1^2}", r"\sin q_1 should be \cos q_1"),
+        ("single_link", "forward_dynamics", "qdd = (tau - m*g*lc*cos(q))/(I + m*lc)", "lc should be lc**2 in m*lc"),
+        ("planar2r", "forward_dynamics[1]", f"{SOLVED} qdd2 = (M11*n2 - M12*n1)/D", ""),
+        ("planar2r", "forward_dynamics[1]", f"{SOLVED.replace('2*qd1', 'qd1')} qdd2 = (M11*n2 - M12*n1)/D", "n1: qd1*qd2 should be 2*qd1*qd2"),
+        ("planar2r", "forward_dynamics[0]", f"{SOLVED} qdd1 = (M22*n1 + M12*n2)/D", "+ M12*n2 should be - M12*n2"),
     ],
 )  # fmt: skip
 def test_lengths_of_rods_and_forward_dynamics_are_read(robot, entry, text, told) -> None:

@@ -20,6 +20,7 @@ from kinlab.check.quantities.quantity import Quantity
 from kinlab.doctor.changes import Case
 from kinlab.doctor.derived import Derivation, derivation_of
 from kinlab.doctor.linkages import five_bar
+from kinlab.doctor.solved import Solved, solved
 from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
@@ -162,13 +163,14 @@ class LookedUp:
         return five_bar.with_numbers(self.linkage, drawn)
 
 
-Reference = Derivation | LookedUp
-"""What texts are held against: derived formulas of an arm, the engine's values of a five-bar."""
+Reference = Derivation | LookedUp | Solved
+"""What texts are held against: derived formulas of an arm, its accelerations as they are solved
+for, the engine's values of a five-bar."""
 
 
 def reference_of(case: Case) -> Reference | None:
     """What the texts of a case are held against, or None where none is offered."""
-    return looked_up(case) or derivation_of(case)
+    return looked_up(case) or derivation_of(case) or solved(case)
 
 
 def looked_up(case: Case) -> LookedUp | None:

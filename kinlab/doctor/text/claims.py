@@ -27,13 +27,14 @@ from kinlab.host.language import _
 from kinlab.model.dh import DHTable
 from kinlab.symbolic.vocabulary import is_planar, vocabulary
 
-_VECTORS = {
+VECTORS = {
     "inverse_dynamics": "tau Q torque t",
     "gravity_torques": "g G D",
     "coriolis_torques": "c h V b cv",
     "momentum": "p",
     "forward_dynamics": "qdd ddq",
 }
+"""The vectors that formulas are of, with the letters that they go by."""
 _MATRICES = {
     "mass_matrix": "M D H B",
     "coriolis_matrix": "C",
@@ -54,7 +55,7 @@ def _by_letter(table: dict[str, str]) -> dict[str, str]:
     return {letter: name for name, letters in table.items() for letter in letters.split()}
 
 
-_VECTOR_OF, _MATRIX_OF, _NUMBER_OF = map(_by_letter, (_VECTORS, _MATRICES, _NUMBERS))
+_VECTOR_OF, _MATRIX_OF, _NUMBER_OF = map(_by_letter, (VECTORS, _MATRICES, _NUMBERS))
 _DETERMINANTS = {2: "planar_position_determinant", 3: "planar_determinant"}
 """What det J is of a planar arm with so many joints: of the rows vx, vy, or of vx, vy, wz."""
 _ANGLES = ("phi", "phie")
@@ -148,7 +149,7 @@ def whole_of(entry: str, table: DHTable | None) -> str:
 
 def alone(quantity: str) -> str:
     """The only entry of a vector or a square matrix, of an arm of one joint."""
-    if quantity in _VECTORS:
+    if quantity in VECTORS:
         return f"{quantity}[0]"
     return f"{quantity}[0,0]" if quantity in ("mass_matrix", "coriolis_matrix") else quantity
 
