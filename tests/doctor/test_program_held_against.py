@@ -271,3 +271,37 @@ def test_the_states_have_unlike_signs_of_a_branch() -> None:
     search = searched("isotropic", "fivebar_jacobian", LEGS)
     signs = search.case.arguments["mode"][search.asked.first]
     assert np.any(signs[:, 0] != signs[:, 1])
+
+
+def test_no_matrix_stands_before_several_names_at_once() -> None:
+    """``H @ leg(i)`` would turn the rows of both vectors into one another, not each vector."""
+    text = """
+import numpy as np
+L1, L2 = [0.30, 0.26], [0.50, 0.54]
+E, SIDE = 0.12, [1, -1]
+
+def leg(i, x, y, mode):
+    e = SIDE[i]*E
+    l1, l2 = L1[i], L2[i]
+    A = 2*(e - x)*l1
+    B = -2*y*l1
+    C = l2**2 - l1**2 - e**2 - x**2 - y**2 + 2*e*x
+    root = np.sqrt(max(A**2 + B**2 - C**2, 0))
+    th = 2*np.arctan2(B + mode[i]*root, A + C)
+    u = np.array([np.cos(th), np.sin(th)])
+    w = (np.array([x, y]) - np.array([e, 0]) - l1*u)/l2
+    return u, w
+
+def f(xy, mode):
+    H = np.array([[0, 1], [-1, 0]])
+    J = []
+    for i in range(2):
+        u, w = leg(i, xy[0], xy[1], mode)
+        J.append(w/(L1[i]*(u @ H @ w)))
+    return np.array(J)
+"""
+    assert kl.diagnose("unequal", "fivebar_jacobian", written(text)).agrees
+    slips = [("np.array([e, 0])", "np.array([E, 0])"), ("J.append(w/(", "J.append(u/(")]
+    found = kl.diagnose("unequal", "fivebar_jacobian", written(with_slips(text, slips)))
+    assert "should be `J.append(w/(L1[i]*(u @ H @ w)))`" in found.causes[0].sentence, str(found)
+    assert "should be `w = (np.array([x, y]) - np.array([e, 0])" in found.causes[0].sentence
