@@ -305,3 +305,36 @@ def f(xy, mode):
     found = kl.diagnose("unequal", "fivebar_jacobian", written(with_slips(text, slips)))
     assert "should be `J.append(w/(L1[i]*(u @ H @ w)))`" in found.causes[0].sentence, str(found)
     assert "should be `w = (np.array([x, y]) - np.array([e, 0])" in found.causes[0].sentence
+
+
+def test_the_rest_of_a_share_is_told() -> None:
+    text = """
+import numpy as np
+
+def f(q):
+    m1, m2, g, l1, l2 = 2.0, 1.5, 9.81, 0.5, 0.4
+    share = m1/(m1 + m2)
+    elbow = l1*np.sin(q[0])
+    tip = elbow + l2*np.sin(q[0] + q[1])
+    return (m1 + m2)*g*(share*elbow + (1 - share)*tip)
+"""
+    assert kl.diagnose("planar2r", "potential_energy", written(text)).agrees
+    wrong = with_slips(text, [("(1 - share)*tip", "share*tip")])
+    found = kl.diagnose("planar2r", "potential_energy", written(wrong))
+    assert "(share*elbow + (1 - share)*tip)`" in found.causes[0].sentence, str(found)
+
+
+@pytest.mark.parametrize(
+    ("lengths", "meant"),
+    [("[0.30, 0.26], [0.54, 0.50]", True), ("[0.30, 0.26], [0.50, 0.54]", False),
+     ("[0.26, 0.30], [0.54, 0.50]", False)],
+)  # fmt: skip
+def test_numbers_of_two_legs_exchanged_are_wrong_where_others_are_in_their_order(
+    lengths, meant
+) -> None:
+    """Legs that are all listed the other way round are a writer's own order."""
+    text = f"L1, L2 = {lengths}\n\ndef f(xy, mode):\n    return L1[0]*L2[1]*xy\n"
+    search = searched("unequal", "fivebar_loop", text.replace("xy, mode", "theta, xy"))
+    told = [*mistyped(search.trial, search.observed, search.case.robot)]
+    assert bool(told) is meant
+    assert all(edit.kind == "entries swapped" for edit in told)

@@ -69,6 +69,8 @@ _INSIDE = 0.06
 """What a product of the program costs more as a term of what is turned."""
 _SIGNED = 1.1
 """Cost of a sign that has a name for a term without."""
+_REST = 1.08
+"""Cost of ``1 - x`` for a share x."""
 _THRICE = 3
 """How often a name may stand in a sum of three equal links."""
 
@@ -153,6 +155,9 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
             yield here.instead(ast.Call(scope.root, [node], []), "function", 1.16)
         if isinstance(node, ast.Name) and node.id in scope.arcs and (whole or summand):
             yield from _supplements(here, scope)
+        if isinstance(op, ast.Mult) and isinstance(node, ast.Name) and _is_a_share(node, scope):
+            rest = ast.BinOp(number(1), ast.Sub(), node)
+            yield here.instead(rest, "missing term", _REST)
         turned = isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub)
         if turned and getattr(node.operand, "id", "") in scope.arcs and scope.pi is not None:
             beyond = ast.BinOp(scope.pi, ast.Sub(), node.operand)
@@ -483,6 +488,14 @@ def _has_squares(node: ast.expr) -> bool:
         return False
     powers = [one.op for one in summands(node) if isinstance(one, ast.BinOp)]
     return any(isinstance(op, ast.Pow) for op in powers)
+
+
+def _is_a_share(node: ast.Name, scope: Scope) -> bool:
+    """Whether a name stands for a part of a whole, of which the rest may be meant."""
+    seen = scope.observed.of(node)
+    if seen is None or seen.shape != () or not seen.values or node.id in scope.arcs:
+        return False
+    return all(0.0 < float(value) < 1.0 for value in seen.values)
 
 
 def _supplements(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

@@ -18,6 +18,7 @@ from kinlab.doctor.program.edits.numbers.data import NumberPlace, leaves, shown,
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit, number, places
 from kinlab.doctor.program.trial import FieldChange, Trial
+from kinlab.fivebar import FiveBar
 from kinlab.model.dh import DHTable
 from kinlab.model.link import Convention
 from kinlab.symbolic.vocabulary import vocabulary
@@ -51,6 +52,8 @@ def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
     A row in which several columns are off is one edit: somebody copied another row.
     """
     table = table_of(robot)
+    if isinstance(robot, FiveBar):
+        yield from _of_legs(trial, observed, robot)
     if table is None:
         return
     yield from _ends(trial, table)
@@ -86,6 +89,21 @@ def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
             row = _row(k, some, whole, alone.issuperset(some))
             yield replace(row, cost=row.cost + _TOGETHER)
         yield from (cell.edit(right) for found in cells.values() for cell, right in found)
+
+
+def _of_legs(trial: Trial, observed: Observed, robot: FiveBar) -> Iterator[ProgramEdit]:
+    """Numbers of a five-bar's two legs exchanged, where as many others are in the legs' order."""
+    known = {tuple(x) for x in robot.values().values() if isinstance(x, list) and len({*x}) == 2}
+    straight: list[Any] = []
+    turned: list[list[_Cell]] = []
+    for found in _columns_of(trial, observed).values():
+        if sorted(found) == [0, 1]:
+            cells = [found[0], found[1]]
+            pair = cells[0].value, cells[1].value
+            straight += [pair] if pair in known else []
+            turned += [cells] if pair not in known and pair[::-1] in known else []
+    for one, other in turned if len(straight) >= len(turned) else ():
+        yield _row(0, [(one, other.value), (other, one.value)], (one, other), True)
 
 
 def _from_zero(found: dict[int, _Cell], count: int) -> dict[int, _Cell]:
