@@ -22,6 +22,8 @@ module            what it holds
                   4 x 4 Jacobian
 ``slips``         Slips of the pen in the entries that are off, alone or after a reading of the
                   whole answer
+``solved``        Forward dynamics of an arm as a reference: the accelerations that its equations
+                  of motion have
 ``verdicts``      Right in another way: with numbers for names, or another valid formula
 ``bytecode/``      The syntax tree of a function whose source text cannot be had
 ``confusions/``   What people take differently: a known confusion, and what the engine would say if

@@ -17,11 +17,11 @@ from kinlab.check.quantities.registry import split_name
 from kinlab.doctor.changes import Case, Mechanism, label_of
 from kinlab.doctor.derived import WRENCH
 from kinlab.doctor.examine import examine, prepare
+from kinlab.doctor.glossary.facts import holding
 from kinlab.doctor.linkages import as_right, five_bar
 from kinlab.doctor.linkages.mechanisms import mechanism_beside
 from kinlab.doctor.shapes import in_full
 from kinlab.doctor.text.claims import alone, claimed_of, named_alone, with_forces, with_wrench
-from kinlab.doctor.text.facts import holding
 from kinlab.doctor.text.habits import with_habits
 from kinlab.doctor.text.joints import joint_values
 from kinlab.doctor.text.line import words_in

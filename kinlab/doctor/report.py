@@ -31,12 +31,12 @@ from kinlab.doctor.file import (
     robot_of,
     twice,
 )
+from kinlab.doctor.glossary.facts import holding
 from kinlab.doctor.linkages.as_right import times
 from kinlab.doctor.linkages.mechanisms import mechanism
 from kinlab.doctor.program.elsewhere import lines_elsewhere
 from kinlab.doctor.program.words import lines
 from kinlab.doctor.text.claims import VECTORS, claimed_of
-from kinlab.doctor.text.facts import holding
 from kinlab.errors import ExpressionError, KinlabError
 from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree

@@ -184,12 +184,21 @@ def _with_more(
             changed = written
             for slip in slips:
                 changed = _defined_otherwise(case, changed, slip)
-            left = _still_off(case, every, changed)
-            more = _per_entry(case, left, changed)
+            left, further = _still_off(case, every, changed), list[list[Slip]]()
+            while left and len(further) < LIST:
+                again = [*_definitions(case, every, left, changed)]
+                one = _defined(case, every, left, again, changed)
+                if one is None:
+                    break
+                further.append([one])
+                changed = _defined_otherwise(case, changed, one)
+                left = _still_off(case, every, changed)
+            more = [*further, *_per_entry(case, left, changed)]
             if all(more):
                 told = [slip.with_error(0.0) for slip in slips[:-1]]
                 last = slips[-1]
-                error = entry.error(last.values, entry.engine) if not left else 0.0
+                known = not left and not further
+                error = entry.error(last.values, entry.engine) if known else 0.0
                 return [*([one] for one in told), [last.with_error(error)], *more]
     return []
 

@@ -165,6 +165,10 @@ def formula_file(
     names = {*file.symbols}.union(
         *map(tree.names, [*file.formulas.values(), *file.symbols.values()])
     )
+    for key, doubt in list(doubts.items()):  # what is said of a matrix is said of its entries
+        if key not in file.formulas and key in chains:
+            whole, _writing = _opened({key: chains[key][0]}, symbols, place, writing)
+            doubts |= dict.fromkeys(whole, doubt)
     left = {key: left_over(*doubts[key], names) for key in doubts.keys() & file.formulas.keys()}
     unread = {key: words for key, words in left.items() if words}
     return replace(file, others=tuple(others), remarks=remarks, unread=unread)

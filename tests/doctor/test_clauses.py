@@ -7,7 +7,7 @@ import pytest
 
 import kinlab as kl
 from kinlab.doctor.file import examine_file
-from kinlab.doctor.text.facts import holding
+from kinlab.doctor.glossary.facts import holding
 from kinlab.errors import ExpressionError
 from kinlab.formulas.handed.clauses import without_clauses
 
@@ -158,3 +158,24 @@ def test_clauses_are_held_against_the_robot_of_a_file(tmp_path) -> None:
     path.write_text(lines.format("+x"), encoding="utf-8")
     with pytest.raises(ExpressionError, match="is not so of this robot"):
         examine_file(path)
+
+
+J2 = "J = [-l1*sin(q1) - l2*sin(q1+q2), -l2*sin(q1+q2); l1*cos(q1) + l2*cos(q1+q2), l2*cos(q1+q2); 1, 1]"
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "text", "said"),
+    [
+        ("planar2r", "planar_jacobian", f"{J2} expressed in the tool frame", True),
+        ("planar2r", "planar_jacobian", f"{J2} expressed in the base frame", False),
+        ("planar2r", "planar_jacobian", f"{J2} in the stretched pose", True),
+        ("planar2r_rods", "M22", f"{M22}, where I2 is the moment of inertia about the second joint", True),
+        ("spatial3r", "M33", "M33 = Izz3 + m3*(cx3^2 + cy3^2), where Izz3 is taken about the axis of joint 3", True),
+        ("spatial3r", "M33", "M33 = Izz3 + m3*(cx3^2 + cy3^2), where Izz3 is taken about the centre of mass of link 3", False),
+    ],
+)  # fmt: skip
+def test_words_beside_a_matrix_and_another_frame_or_point_are_said(
+    robot, entry, text, said
+) -> None:
+    found = kl.diagnose(robot, entry, text)
+    assert found.agrees and any("were not read" in one for one in found.remarks) is said, str(found)

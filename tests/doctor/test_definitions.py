@@ -240,3 +240,19 @@ def test_lengths_of_rods_and_forward_dynamics_are_read(robot, entry, text, told)
     found = kl.diagnose(robot, entry, text)
     assert found.agrees is not bool(told), str(found)
     assert told in "".join(cause.sentence for cause in found.causes)
+
+
+def test_a_factor_of_a_definition_is_told_in_it_beside_a_slip_in_another() -> None:
+    text = (
+        "K1 = 1/3*m1*l1^2*dq1^2; K2 = 1/2*m2*(l1^2*dq1^2 + l2^2/4*(dq1+dq2)^2 "
+        "+ l1*l2*cos(q2)*dq1*(dq1+dq2)) + 1/2*I2*dq2^2; T = K1 + K2"
+    )
+    (cause,) = kl.diagnose("planar2r_rods", "kinetic_energy", text).causes
+    assert cause.places == ("K2", "K1") and "K1: 3 should be 6" in cause.sentence
+    assert cause.error_after < 1e-12
+
+
+def test_an_angle_with_the_other_sign_in_all_its_parts_is_no_other_angle() -> None:
+    text = "y = l1*sin(q1) - l2*sin(q1-q2)"
+    (cause, *_others) = kl.diagnose("planar2r", "y", text).causes
+    assert len(cause.kinds) == 2 and "(-" not in cause.sentence, cause.sentence

@@ -17,6 +17,7 @@ from kinlab.doctor.derivations.words import together
 from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.excuses import only_for
 from kinlab.doctor.file import as_judged, examine_formulas, refuse_unjudged, with_names
+from kinlab.doctor.glossary.facts import holding
 from kinlab.doctor.linkages import five_bar
 from kinlab.doctor.linkages.named_numbers import named_numbers
 from kinlab.doctor.marking.marks import (
@@ -37,7 +38,6 @@ from kinlab.doctor.marking.words import for_student
 from kinlab.doctor.program.words import WrongLines
 from kinlab.doctor.shapes import in_full
 from kinlab.doctor.text.claims import claimed_of
-from kinlab.doctor.text.facts import holding
 from kinlab.doctor.text.own_names import in_robot_names
 from kinlab.errors import ExpressionError, KinlabError
 from kinlab.fivebar import FiveBar

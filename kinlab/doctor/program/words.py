@@ -21,7 +21,7 @@ from kinlab.doctor.program.cuts import cuts
 from kinlab.doctor.program.digits import of_rounded_numbers
 from kinlab.doctor.program.edits.chains import SUMS, chain, joined
 from kinlab.doctor.program.edits.numbers.as_the_arm import of_table
-from kinlab.doctor.program.edits.numbers.data import shown
+from kinlab.doctor.program.edits.numbers.data import leaves, shown
 from kinlab.doctor.program.grounds.scaled import is_own
 from kinlab.doctor.program.named import named
 from kinlab.doctor.program.nearly import of_small_numbers
@@ -471,6 +471,9 @@ def _of_data(edit: ProgramEdit, trial: Trial) -> str:
     if edit.numbers is None:
         return _("{name}, {what}").format(**said)
     old, new = edit.numbers
+    for leaf in leaves(trial):  # another edit may have stood there when it was found
+        if (leaf.node, leaf.place) == (edit.node, edit.place):
+            old = float(leaf.value)
     told = _("{name}, {what}: {old} should be {new}")
     return told.format(**said, old=shown(old), new=shown(new))
 

@@ -297,9 +297,14 @@ def _wave(line: Line, place: Place, wave: Node) -> None:
     minus = tree.mul(tree.num(-1), tree.call(other, argument))
     _node(line, place, minus, "sin/cos", 1.7)
     for angle in (*line.names.angles, *_beside(line, argument)):
-        if angle != argument:
+        if angle != argument and not (_is_turned(angle) and not _is_turned(argument)):
             _node(line, place, tree.call(wave.op, angle), "argument", 1.2)
             _node(line, place, tree.call(other, angle), "argument", 2.0)
+
+
+def _is_turned(angle: Node) -> bool:
+    """Whether all of a sum of angles is negative: that is a sign, and another argument."""
+    return all(any(one.op == "num" and one.value < 0 for one in x.factors) for x in angle.terms)
 
 
 def _beside(line: Line, angle: Node) -> Iterator[Node]:

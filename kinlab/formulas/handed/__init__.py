@@ -1,4 +1,4 @@
-"""Formulas as they are handed in: with words, code and units around them, dressed for a page.
+"""Formulas as they are handed in: with words, code and units around them.
 
 ==============  ===================================================================================
 module          what it holds
@@ -7,7 +7,6 @@ module          what it holds
 ``code``        Formulas as they stand in programs: ``lambda``, ``def``, ``self.l1``, comments
 ``columns``     A column of names before a column of formulas
 ``constants``   A free constant behind a potential
-``dressed``     LaTeX as it is dressed for a page: boxes, arrows, colours, old commands
 ``equations``   Equations that give an entry otherwise than by its name alone, solved for it
 ``letters``     Letters and signs of word processors and web pages
 ``prose``       Which words beside a formula may change what it claims

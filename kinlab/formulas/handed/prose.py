@@ -84,7 +84,8 @@ _UP_TO = re.compile(
     re.IGNORECASE,
 )
 _ELSEWHERE = re.compile(
-    r"\b(?:I_?\d|inertias?)\b[^.;=]{0,40}?\b(?:about|around|at) (?:the |its |their )?"
+    r"\b(?:I[a-z]{0,2}_?\d|inertias?)\b[^.;=]{0,40}?\b(?:about|around|at) (?:the |its |their )?"
+    r"(?:(?:first|second|third|fourth|axis of|axes of|own) (?:the )?)*"
     r"(?:joints?|pivots?|hinges?|ends?|axes|axis of rotation)\b"
     r"|\b(?:I_?\d|trägheitsmomente?s?)\b[^.;=]{0,40}?\b(?:um|bezüglich|bezogen auf)"
     r" (?:das |des |den |die |der |dem )?(?:gelenke?s?|drehpunkte?s?|drehachse|lagers?|endes?)\b"
@@ -93,6 +94,15 @@ _ELSEWHERE = re.compile(
     re.IGNORECASE,
 )
 """Moments of inertia about another point than the robot's are."""
+_OTHER_FRAME = re.compile(
+    r"\b(?:in|into|with respect to|relative to) (?:the |its |their )?"
+    r"(?:tool|hand|end-?effector|tcp|body|link|moving|local|own)(?:'s)?[ -]"
+    r"(?:fixed )?(?:frames?|systems?|coordinates?|axes)\b"
+    r"|\b(?:im|ins|bezüglich des) (?:werkzeug|tcp|körper|end-?effektor|greifer)-?(?:fest\w+ )?"
+    r"(?:koordinaten)?systems?\b|(?:工具|末端|手爪|本体|连杆)坐标系",
+    re.IGNORECASE,
+)
+"""Axes in which an entry's numbers are others, but for those of the tool's own."""
 _SCALED = re.compile(
     r"\bin (?:mm|cm|dm|km|inch(?:es)?|feet|grams?|tonnes?|(?:milli|centi)met(?:re|er)s?"
     r"|(?:milli|zenti)metern?|gramm)\b|\bk?N\s?[·.*]?\s?(?:mm|cm)\b|\bkN\s?m?\b|毫米|厘米|英寸",
@@ -128,7 +138,8 @@ def doubtful(text: str, entry: str) -> list[tuple[str, str]]:
     for prose, typeset in _proses(text):
         front, _behind = _cut(_FRAME.sub(" ", prose))
         found += _of(front, entry, typeset) + _parts(front, entry)
-        for kind in (_UP_TO, _ELSEWHERE, _SCALED):
+        frames = () if "tool" in entry else (_OTHER_FRAME,)
+        for kind in (_UP_TO, _ELSEWHERE, _SCALED, *frames):
             found += [(one[0], around(prose, *one.span())) for one in kind.finditer(prose)]
     return found + _conditions(text)
 

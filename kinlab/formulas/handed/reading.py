@@ -8,12 +8,12 @@ from kinlab.formulas.handed.clauses import Holds, without_clauses
 from kinlab.formulas.handed.code import without_code
 from kinlab.formulas.handed.columns import of_column
 from kinlab.formulas.handed.constants import without_constant
-from kinlab.formulas.handed.dressed import undressed
 from kinlab.formulas.handed.letters import plain_letters, siciliano_s_letters, without_marks
 from kinlab.formulas.handed.prose import doubtful
 from kinlab.formulas.handed.rates import plain_rates
 from kinlab.formulas.handed.units import without_units
 from kinlab.formulas.handed.words import without_words
+from kinlab.formulas.signs.dressed import undressed
 
 _ALONE = re.compile(
     r"(?:p_?)?[xyz]|[VUPTKL]|phi|det\w*|E_?[pk]|\w*energy|lagrangian|[\w,\[\]]*[\d\]]"
@@ -37,6 +37,9 @@ _NUMBERS = re.compile(
 _BETWEEN = re.compile(r"[,，;；]\s*|\s+(?:and|und)\s+|\s*[和与]\s*")
 _REMARK = re.compile(r"^(\s*\([A-Za-z]{3,}[ ,.][^()=+*/^]*\))\s+(?=\\?[A-Za-z])")
 """A remark in front: ``(see Craig, section 6.7)``."""
+_BRACED_COMMA = re.compile(r"(?<=\d)\{,\}(?=\d)")
+_COMMA = re.compile(r"(=\s*\d+),(\d+)(?=\s*(?:kg|m|N)\b)")
+_GIVEN = re.compile(r"\b(?:da|weil|because|since|using)(?=\s+\$?\w{1,3}(?:_\{?\w\}?)?\$?\s*=\s*\d)")
 _ON_A_LINE = re.compile(r"\n\s*(?=(?:with|mit)\s)")
 
 
@@ -62,6 +65,7 @@ def as_formula(
     text = _GAP.sub(lambda gap: "\n" if "\n" in gap[0] else " ", plain_letters(text, place))
     if holds is not None:
         text = without_clauses(text, place, holds)
+    text = _GIVEN.sub("where", _COMMA.sub(r"\1.\2", _BRACED_COMMA.sub(".", text)))
     text = _ON_A_LINE.sub(" ", _REMARK.sub(r"\1: ", text))
     text = _NUMBERS.sub(lambda found: f"{_BETWEEN.sub('; ', found[1]).rstrip('; ')}; ", text)
     text = _MEANS.sub(r"\1, where ", _SCORE.sub(" ", text), count=1)

@@ -33,7 +33,7 @@ _ENTRIES = (
 )
 """The units that entries have, of joints that turn and joints that slide."""
 _NAMES = (
-    (re.compile(r"(?:l|L|a|b|d|r|h|lc|Lc|e)_?\{?\w{0,2}\}?"), (1, 0, 0)),
+    (re.compile(r"(?:l|L|a|b|d|r|h|lc|Lc|e|[xyz](?=_?\{?[tb]))_?\{?\w{0,2}\}?"), (1, 0, 0)),
     (re.compile(r"(?:m|M)_?\{?\w{0,2}\}?"), (0, 1, 0)),
     (re.compile(r"g"), (1, 0, -2)),
     (re.compile(r"(?:I|J)_?\{?\w{0,4}\}?"), (2, 1, 0)),

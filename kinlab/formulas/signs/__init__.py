@@ -6,6 +6,7 @@ module        what it holds
 ``beside``    Factors side by side in plain text, as in a book: ``2 l1 c12``, ``m2(a + b)``
 ``brackets``  Where brackets are closed, and what stands outside of all of them
 ``degrees``   Angles in degrees, as angles in radians
+``dressed``   LaTeX as it is dressed for a page: boxes, arrows, colours, old commands
 ``latex``     LaTeX of the textbooks as plain arithmetic text, which the whitelist parser then
               reads
 ``letters``   Letters and signs of Unicode as plain text or LaTeX

@@ -41,6 +41,7 @@ _RODS = {
     "被动",
     "从动杆",
 }
+_WHOLE = {"full", "whole", "gesamte", "volle"}
 _BEFORE = {"previous", "preceding", "before", "vorigen", "前"}
 _SLIDING = {"stroke", "prismatic", "行程"}
 _AXES = {"axes", "gelenkachsen", "achsen", "轴"}
@@ -279,6 +280,8 @@ class _Facts:
         return self._each(claim, self._is_half)
 
     def length(self, claim: Claim) -> bool | None:
+        if claim.words & _WHOLE and not claim.refs:
+            return None
         for name in claim.names:
             k = int(name[-1])
             if _is_own(claim) is False:
