@@ -338,3 +338,25 @@ def test_numbers_of_two_legs_exchanged_are_wrong_where_others_are_in_their_order
     told = [*mistyped(search.trial, search.observed, search.case.robot)]
     assert bool(told) is meant
     assert all(edit.kind == "entries swapped" for edit in told)
+
+
+def test_a_sign_is_told_where_a_name_is_set_if_that_is_the_textbook_s() -> None:
+    text = """
+import numpy as np
+
+def f(q, v, a):
+    m1, m2, g, l1, l2 = 2.0, 1.5, 9.81, 0.5, 0.4
+    h = m2*l1*l2*np.sin(q[1])
+    b = m2*l1*l2*np.cos(q[1])
+    cor1 = -h*(2*v[0]*v[1] + v[1]**2)
+    cor2 = h*v[0]**2
+    grav2 = m2*g*l2*np.cos(q[0] + q[1])
+    grav1 = (m1 + m2)*g*l1*np.cos(q[0]) + grav2
+    first = ((m1 + m2)*l1**2 + m2*l2**2 + 2*b)*a[0] + (m2*l2**2 + b)*a[1]
+    second = (m2*l2**2 + b)*a[0] + m2*l2**2*a[1]
+    return np.array([first + cor1 + grav1, second + cor2 + grav2])
+"""
+    wrong = with_slips(text, [("cor2 = h*", "cor2 = -h*")])
+    assert kl.diagnose("planar2r", "inverse_dynamics", written(text)).agrees
+    found = kl.diagnose("planar2r", "inverse_dynamics", written(wrong))
+    assert "should be `cor2 = h*v[0]**2`" in found.causes[0].sentence, str(found)

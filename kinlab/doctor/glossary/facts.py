@@ -45,7 +45,7 @@ _WHOLE = {"full", "whole", "gesamte", "volle"}
 _BEFORE = {"previous", "preceding", "before", "vorigen", "前"}
 _SLIDING = {"stroke", "prismatic", "行程"}
 _AXES = {"axes", "gelenkachsen", "achsen", "轴"}
-_OF_EACH = ("always", "independent", "units", "mass", "zero level")
+_OF_EACH = ("always", "independent", "units", "mass", "zero_level")
 """Kinds of claims that are true of every arm."""
 _COUNTED = {"counterclockwise", "anticlockwise", "counter-clockwise", "逆时针", "uhrzeigersinn"}
 
@@ -63,8 +63,8 @@ def holding(mechanism: Mechanism) -> Holds:
 
     def holds(claim: Claim) -> bool | None:
         if claim.kind in _OF_EACH:
-            return _is_of_joint_one(claim) if claim.kind == "zero level" else _is_own(claim)
-        known = getattr(facts, claim.kind.replace(" ", "_").replace("'", ""), None)
+            return _is_of_joint_one(claim) if claim.kind == "zero_level" else _is_own(claim)
+        known = getattr(facts, claim.kind, None)
         return None if known is None else known(claim)
 
     return holds
@@ -73,7 +73,7 @@ def holding(mechanism: Mechanism) -> Holds:
 def _of_five_bar(claim: Claim) -> bool | None:
     if claim.kind in ("always", "independent", "units"):
         return True
-    if claim.kind == "base pins":
+    if claim.kind == "base_pins":
         whole = "2" in claim.words
         return whole != bool(claim.words & _HALF)
     if claim.kind == "cranks":

@@ -32,7 +32,7 @@ VECTORS = {
     "gravity_torques": "g G D",
     "coriolis_torques": "c h V b cv",
     "momentum": "p",
-    "forward_dynamics": "qdd ddq",
+    "forward_dynamics": "qdd",
 }
 """The vectors that formulas are of, with the letters that they go by."""
 _MATRICES = {

@@ -67,6 +67,8 @@ _ALIKE = 0.03
 """Costs that are nothing to go by beside what a repair leaves right."""
 _BESIDE = 0.08
 """The same of a missing term beside a factor, where it makes more what a textbook has."""
+_SET = 0.1
+"""What a sign may cost more where a name is set than one in front of it."""
 _SAME = 0.011
 """Costs that are one."""
 _HELD = 8
@@ -323,7 +325,9 @@ class LineSearch:
         if len(found) < 2 or not self.evidence.known:
             return found
         found = self.of_any_arm(found)
-        best = found[0].edits[-1]
+        first = self._where_it_is_set(found[0], found)
+        found = [first, *(one for one in found if one is not first)]
+        best = first.edits[-1]
         likeliest = self.likely(best)
         lines: dict[Any, ProgramRepair] = {}
         others: dict[Any, ProgramRepair] = {}
@@ -355,6 +359,22 @@ class LineSearch:
         rivals = [one for one in same[1:2] if not _add_the_same(first.edits[-1], one.edits[-1])]
         first = replace(first, rivals=tuple(rivals))
         return [first, *(one for one in found if one.edits != first.edits)]
+
+    def _where_it_is_set(self, first: ProgramRepair, found: list[ProgramRepair]) -> ProgramRepair:
+        """Of a sign in front of a name the one where the name is set, if it is right so."""
+        edit = first.edits[-1]
+        name = getattr(getattr(edit.node, "right", None), "id", None)
+        if edit.kind != "sign" or edit.part == DATA or name is None:
+            return first
+        right = self.left_right(first.edits[-1:])
+        lines = (x for x in nodes(self.trial.trees[edit.part]) if isinstance(x, ast.Assign))
+        values = {id(x.value) for x in lines if getattr(x.targets[0], "id", "") == name}
+        for other in found:
+            one = other.edits[-1]
+            near = one.kind == "sign" and self.likely(one) <= self.likely(edit) + _SET
+            if near and id(one.node) in values and self.left_right(other.edits[-1:]) > right:
+                return other
+        return first
 
     def _by_name(self, found: list[ProgramRepair]) -> list[ProgramRepair]:
         """The name for a factor that it has as its value, where no other arm tells them apart."""
