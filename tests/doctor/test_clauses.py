@@ -127,6 +127,7 @@ def test_what_is_not_so_is_refused_by_its_words(robot, entry, text, words) -> No
         "I2 about joint 2",
         "where lc2 is half the length of link 2, measured from the end",
         "where q2 is the absolute angle of link 2",
+        "where q2 is the angle of link 1 relative to link 2",
         "without the rotor",
     ],
 )

@@ -41,6 +41,7 @@ _RODS = {
     "被动",
     "从动杆",
 }
+_BETWEEN = {"between", "zwischen", "之间", "夹角"}
 _WHOLE = {"full", "whole", "gesamte", "volle"}
 _BEFORE = {"previous", "preceding", "before", "vorigen", "前"}
 _SLIDING = {"stroke", "prismatic", "行程"}
@@ -205,8 +206,9 @@ class _Facts:
             return (
                 True if claim.words & {"previous", "preceding", "before", "vorigen", "前"} else None
             )
-        right = (sorted(told) == [k - 1, k], told == [k - 1], told == [k, k - 1])
-        return True if any(right) else None
+        if claim.words & _BETWEEN:
+            return sorted(told) == [k - 1, k] or None
+        return True if told in ([k - 1], [k, k - 1]) else None
 
     def angle_from(self, claim: Claim) -> bool | None:
         """Of the first joint of an arm in a plane whose first link lies along x at zero."""
@@ -238,6 +240,9 @@ class _Facts:
         way = claim.words & (_UP | _DOWN)
         if not way or not self._down.any():
             return not claim.names or _is_own(claim)
+        before = [self._axes[k][:3, 2] for k in range(max(some) - 1)]
+        if any(abs(float(axis @ self._down)) < 1 - TOLERANCES.formula_agrees for axis in before):
+            return None  # which way is up depends on the joints before
         right = self._down if way & _DOWN else -self._down
         return all(_along(self._moves(k), right) for k in some)
 
