@@ -180,3 +180,12 @@ def test_words_beside_a_matrix_and_another_frame_or_point_are_said(
 ) -> None:
     found = kl.diagnose(robot, entry, text)
     assert found.agrees and any("were not read" in one for one in found.remarks) is said, str(found)
+
+
+def test_a_letter_below_a_matrix_is_no_word() -> None:
+    text = (
+        r"{}^0_eT = \begin{bmatrix} c_{12} & s_{12} & 0 & l_1 c_1 + l_2 c_{12} \\ "
+        r"s_{12} & c_{12} & 0 & l_1 s_1 + l_2 s_{12} \\ 0 & 0 & 1 & 0 \\ 0 & 0 & 0 & 1 \end{bmatrix}"
+    )
+    (cause,) = kl.diagnose("planar2r", "fk", text).causes
+    assert cause.places == ("fk[0,1]",) and cause.kinds == ("sign",)

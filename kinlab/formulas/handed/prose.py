@@ -259,7 +259,10 @@ def left_over(text: str, found: Iterable[tuple[str, str]], names: Iterable[str])
 def _proses(text: str) -> tuple[tuple[str, bool], ...]:
     """The pieces of a text in which words may stand, and whether letters may be products there."""
     left = text.partition("=")[0] if "=" in text else ""
-    below = " ".join(_FONT.sub(r" \1 ", one[0].lstrip("_")) for one in _BELOW.finditer(left))
+    found = [one[0].lstrip("_ ") for one in _BELOW.finditer(left)]
+    if "\\" in text:  # without braces one letter stands below: _eT
+        found = [one for one in found if one[:1] == "{"]
+    below = " ".join(_FONT.sub(r" \1 ", one) for one in found)
     said = [(re.sub(r"[{}\\]", " ", below), False)]
     text = _BELOW.sub("_0", text)
     said += [(one[1], False) for one in _FONT.finditer(text)]
