@@ -37,6 +37,7 @@ from kinlab.doctor.linkages.mechanisms import mechanism
 from kinlab.doctor.program.elsewhere import lines_elsewhere
 from kinlab.doctor.program.words import lines
 from kinlab.doctor.text.claims import VECTORS, claimed_of
+from kinlab.doctor.text.claims import alone as alone_of
 from kinlab.errors import ExpressionError, KinlabError
 from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree
@@ -83,7 +84,7 @@ def diagnose(
     if isinstance(function, str):
         arm = mechanism(robot)
         only = not isinstance(arm, FiveBar) and arm.n == 1 and quantity in VECTORS
-        entry = f"{quantity}[0]" if only else quantity
+        entry = alone_of(quantity) if only else quantity
         document = {"robot": arm.name, "formulas": {entry: function}}
         file = formula_file(document, "formula", holds=holding(arm))
         judged = examine_formulas(file, arm, whole(samples, "samples", FEWEST), seed_of(seed))

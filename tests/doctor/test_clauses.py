@@ -128,6 +128,7 @@ def test_what_is_not_so_is_refused_by_its_words(robot, entry, text, words) -> No
         "where lc2 is half the length of link 2, measured from the end",
         "where q2 is the absolute angle of link 2",
         "where q2 is the angle of link 1 relative to link 2",
+        "where q1 is measured negative from the horizontal",
         "without the rotor",
     ],
 )
@@ -138,6 +139,12 @@ def test_what_is_no_known_clause_stays_in_doubt(words) -> None:
     except ExpressionError:
         return
     assert any("were not read" in one for one in found.remarks), str(found)
+
+
+@pytest.mark.parametrize("way", ["im Uhrzeigersinn", "gegen den Uhrzeigersinn"])
+def test_which_way_an_angle_is_counted_is_never_passed_over_in_german(way) -> None:
+    with pytest.raises(ExpressionError):
+        kl.diagnose("planar2r", "x", f"{X2}, wobei q1 {way} von der Horizontalen gemessen wird")
 
 
 def test_names_that_stay_behind_keep_the_word_that_opens_them() -> None:

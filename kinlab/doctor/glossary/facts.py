@@ -46,9 +46,9 @@ _WHOLE = {"full", "whole", "gesamte", "volle"}
 _BEFORE = {"previous", "preceding", "before", "vorigen", "前"}
 _SLIDING = {"stroke", "prismatic", "行程"}
 _AXES = {"axes", "gelenkachsen", "achsen", "轴"}
+_NEGATIVE = {"negative", "minus", "negativer", "negativen", "负"}
 _OF_EACH = ("always", "independent", "units", "mass", "zero_level")
 """Kinds of claims that are true of every arm."""
-_COUNTED = {"counterclockwise", "anticlockwise", "counter-clockwise", "逆时针", "uhrzeigersinn"}
 
 
 def holding(mechanism: Mechanism) -> Holds:
@@ -218,6 +218,8 @@ class _Facts:
         if not all(re.fullmatch(r"\D+1" if self.table.n > 1 else r"\D+1?", x) for x in claim.names):
             return None
         if any(number != 1 for _kind, number in claim.refs) or claim.axes not in ((), ("x",)):
+            return None
+        if self.table.links[0].flip or claim.words & _NEGATIVE:
             return None
         along = self._axes[1][:3, 3] - self._axes[0][:3, 3]
         right = along[0] > 0 and abs(along[1]) <= TOLERANCES.same_length * along[0]
