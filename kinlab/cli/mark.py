@@ -43,8 +43,9 @@ def mark(
 ) -> None:
     """Mark a class: every answer beside the engine, with points, pages and results.
 
-    A run that was stopped goes on where it was. Below `answer` nothing that is written holds a
-    right formula.
+    A run that was stopped goes on where it was; pages of submissions that are no longer there are
+    removed. Below `answer` nothing that is written holds a right formula. Exit code 1 if kinlab
+    itself failed on an answer.
     """
     from kinlab.doctor.marking.handout import students_of, write_handouts
     from kinlab.doctor.marking.run import mark as mark_all
@@ -82,6 +83,8 @@ def mark(
         said = _("  {question}: {kind}, {count} of {all}")
         echo(said.format(question=question, kind=_(kind), count=count, all=len(marks)))
     wrote(output)
+    if any(one.failed for one in marks.marks):
+        raise typer.Exit(1)
 
 
 COMMANDS = {"mark": mark}

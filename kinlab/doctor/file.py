@@ -132,6 +132,12 @@ _UNCONDITIONED = {"sign", "sin/cos", "index", "power", "argument"}
 """Kinds of slips that no special case, no part and no other point of the arm can be."""
 
 
+def _counted(label: str) -> str:
+    """The entry of a label, counted from 1: ``(1, 3)`` of ``planar_jacobian[0,2]``."""
+    told = ", ".join(str(int(k) + 1) for k in re.findall(r"-?\d+", label.partition("[")[2]))
+    return f"({told})" if "," in told else told
+
+
 def _judged_with(found: Diagnosis, file: FormulaFile) -> Diagnosis:
     """A diagnosis of a formula with words that were not read: right as it stands, or not judged.
 
@@ -461,10 +467,10 @@ def _answers(
         if label not in labels:
             raise refused(
                 f"{file.path}: {titles[label]}",
-                N_("{label} does not exist; {plain} has shape {shape}"),
-                label=label,
+                N_("there is no entry {entry}; {plain} is {shape}"),
+                entry=_counted(label),
                 plain=plain,
-                shape=shape,
+                shape=" x ".join(map(str, shape)) or "1",
             )
     if plain in _MIRRORED:
         turned = {label_of(plain, k): label_of(plain, k[::-1]) for k in np.ndindex(shape)}

@@ -29,7 +29,7 @@ from typing import Any
 
 from kinlab.errors import ExpressionError, FileError
 from kinlab.formulas import grids, tree, typed
-from kinlab.formulas.handed.clauses import Holds
+from kinlab.formulas.handed.clauses import Claim, Holds
 from kinlab.formulas.handed.equations import solved
 from kinlab.formulas.handed.prose import Doubt, left_over
 from kinlab.formulas.handed.reading import as_formula
@@ -150,6 +150,8 @@ def formula_file(
             unused = name not in used or name[0] == "L"
             if unused and not _readable(formula):
                 continue  # beside the formula, and not used in it
+            if unused and holds is not None:
+                _refuse_untrue(name, formula, holds, f"{place}: {key}")
             if symbols.setdefault(name, formula) != formula:
                 said = N_(
                     "{name} is explained twice; keep one, in front of the formula or in [symbols]"
@@ -175,6 +177,18 @@ def formula_file(
 
 
 _SIGNS = re.compile(r"[_{}\\\s]")
+
+
+def _refuse_untrue(name: str, formula: str, holds: Holds, place: str) -> None:
+    """Refuses a number that is said of a name of the arm's beside a formula, and is another.
+
+    Raises:
+        ExpressionError: with both.
+    """
+    claim = Claim("value", (name,), words=frozenset((formula.strip(" $"),)))
+    if holds(claim) is False:
+        said = N_("{words!r} beside the formula is not so of this robot; leave it out")
+        raise refused(place, said, words=f"{name} = {formula.strip(' $')}"[:80])
 
 
 def _readable(text: str) -> bool:

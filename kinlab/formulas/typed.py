@@ -612,6 +612,11 @@ _BY_DEFINITION = re.compile(
 """A part of a chain of equalities that says what the entry is: a derivative, -y, J^T f, T - V."""
 
 
+def says_what_it_is(text: str) -> bool:
+    """Whether a part of a chain of equalities says what the entry is, and not what it comes to."""
+    return bool(_BY_DEFINITION.search(text.replace("−", "-").strip(" .$")))
+
+
 _LONGEST_CHAIN = 8
 
 
@@ -639,7 +644,7 @@ def readings(text: str, entry: str) -> list[str]:
     alone = len(parts) == 2 and (names or not _is_formula(parts[0]))
     if alone or strange or several:
         return [text]
-    formulas = [one for one in formulas if not _BY_DEFINITION.search(one)] or formulas[-1:]
+    formulas = [one for one in formulas if not says_what_it_is(one)] or formulas[-1:]
     left = f"{left or names[0]} = " if names else ""
     return [f"{dollars}{left}{formula}{dollars}" for formula in reversed(formulas)]
 

@@ -346,3 +346,11 @@ def test_no_slip_is_told_that_leaves_nothing_of_its_term(angle: str) -> None:
     found = kl.diagnose("planar3r", "C32", f"l2*{length}*m3*(qd1 - qd2)*sin({angle})/2")
     assert "- qd2 should be + qd2" in found.causes[0].sentence, str(found)
     assert "missing" not in found.causes[0].sentence
+
+
+def test_a_formula_is_not_written_anew():
+    """Of three slips in a product, none is told where what is left would be nothing."""
+    wrong = "xt*(a2 - xt*cos(q3))*cos(q2)*cos(q3)"  # a1*xt*(a2 + xt*cos(q3))*sin(q2)*cos(q3)
+    found = kl.diagnose("spatial3r", "jacobian_determinant", wrong)
+    assert not found.agrees
+    assert not any("is missing" in cause.sentence for cause in found.causes), found

@@ -47,6 +47,7 @@ _BEFORE = {"previous", "preceding", "before", "vorigen", "前"}
 _SLIDING = {"stroke", "prismatic", "行程"}
 _AXES = {"axes", "gelenkachsen", "achsen", "轴"}
 _NEGATIVE = {"negative", "minus", "negativer", "negativen", "负"}
+_NUMBER = re.compile(r"(\d+(?:\.\d+)?)(?:\s*(?:m|kg|rad|kg\s?m\^?2|m/s\^?2))?")
 _OF_EACH = ("always", "independent", "units", "mass", "zero_level")
 """Kinds of claims that are true of every arm."""
 
@@ -169,6 +170,12 @@ class _Facts:
         else:
             return None
         return bool(abs(abs(own) - value) <= TOLERANCES.formula_agrees * max(abs(value), 1.0))
+
+    def value(self, claim: Claim) -> bool | None:
+        """Of a name whether the arm's number is that; not known of what is no number."""
+        (name,), (typed,) = claim.names, claim.words
+        found = _NUMBER.fullmatch(typed)
+        return None if found is None else self._is_value(name.replace("_", ""), float(found[1]))
 
     # -------- Gravity and axes
 

@@ -22,6 +22,7 @@ from kinlab.doctor.linkages import five_bar
 from kinlab.doctor.linkages.named_numbers import named_numbers
 from kinlab.doctor.marking.marks import (
     Outcome,
+    failed,
     lost,
     missing,
     points_left,
@@ -50,6 +51,7 @@ from kinlab.formulas.typeset import Marks, equation
 from kinlab.host.language import N_, _
 
 _WRITTEN = 400
+_DECIMALS = re.compile(r"(?<![\w.])\d+\.\d+")
 
 
 def judge(sheet: Sheet, submission: Submission, feedback: str | None = None) -> list[Outcome]:
@@ -126,7 +128,7 @@ def _one(sheet: Sheet, question: Question, submission: Submission) -> Outcome:
     except KinlabError as problem:
         return lost(question, _in_own_names(str(problem), given, submission), written)
     except Exception as problem:  # noqa: BLE001  whatever happens costs one answer, not a class
-        return lost(question, f"{question.id}: {type(problem).__name__}", written)
+        return failed(question, problem, written)
     return replace(outcome, written=written)
 
 
@@ -171,18 +173,30 @@ def _free_of_numbers(file: FormulaFile, sheet: Sheet, own: Mechanism) -> bool:
 
 
 class _Key:
-    """A robot and formulas; equal where the texts are, so that a class's same answers are one."""
+    """A robot and formulas; equal where all that a diagnosis may quote is, so that a class's same
+    answers are one.
+
+    Of two that differ in the words beside a formula each is told his own.
+    """
 
     def __init__(self, robot: Mechanism, file: FormulaFile) -> None:
         self.robot, self.file = robot, file
-        typed = (item for part in (file, *file.others) for item in part.as_typed.items())
-        self.texts = (id(robot), *typed, *file.symbol_texts.items())
+        self.texts = (id(robot), *map(_all_of, (file, *file.others)))
 
     def __hash__(self) -> int:
         return hash(self.texts)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, _Key) and self.texts == other.texts
+
+
+def _all_of(file: FormulaFile) -> tuple[Any, ...]:
+    """What was typed, how it was read, and what was said beside it."""
+    read = (
+        (name, str(one)) for some in (file.formulas, file.symbols) for name, one in some.items()
+    )
+    typed = (file.as_typed, file.symbol_texts, file.symbols_typed, file.remarks, file.unread)
+    return (*read, *(item for some in typed for item in some.items()))
 
 
 @lru_cache(maxsize=4096)
@@ -296,7 +310,8 @@ def _places(
             meaning |= _meanings(written, file, robot, entry)
             meaning = {name: meant for name, meant in meaning.items() if name not in alike}
             paths, _marks = differences(written, tree.renamed(formula, meaning), meaning)
-            pieces = [_piece(tree.at_path(written, path)) for path in sorted(paths)]
+            typed = file.as_typed.get(entry, "")
+            pieces = [_piece(tree.at_path(written, path), typed) for path in sorted(paths)]
             shown = _named(entry)
             look = _("{entry}: look at {pieces}").format(entry=shown, pieces=together(pieces))
             places.append(look if pieces else shown)
@@ -308,7 +323,12 @@ def _places(
     return places or [_("the formula as a whole")], tuple(formulas)
 
 
-def _piece(node: Node) -> str:
+def _piece(node: Node, typed: str) -> str:
+    """A piece of a formula; what was typed as a decimal is no fraction: 0.2 for 1/5."""
+    digits = {*_DECIMALS.findall(typed)}
+    for path, part in [*tree.nodes(node)]:
+        if part.op == "num" and f"{abs(float(part.value)):.12g}" in digits:
+            node = tree.replaced(node, path, tree.sym(f"{float(part.value):.12g}"))
     return str(node).replace("**", "^")
 
 

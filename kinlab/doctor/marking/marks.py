@@ -8,7 +8,7 @@ import math
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any, TypeVar
 
 from kinlab.doctor.marking.sheet import Question, Sheet
@@ -21,6 +21,8 @@ RIGHT = N_("right")
 WRONG = N_("wrong")
 UNREAD = N_("could not be read")
 MISSING = N_("no answer")
+FAULT = "fault"
+"""The kind of an outcome that is no student's."""
 _GRADES = {
     "": RIGHT,
     "rounded": N_("right with rounded numbers"),
@@ -104,6 +106,13 @@ def lost(question: Question, remark: str, written: tuple[str, ...] = ()) -> Outc
     return Outcome(question.id, UNREAD, 0.0, question.points, ("unread",), written, remark=remark)
 
 
+def failed(question: Question, problem: Exception, written: tuple[str, ...] = ()) -> Outcome:
+    """An answer on which kinlab itself failed: nobody's slip, and not kept for the next run."""
+    said = _("kinlab itself failed on this answer ({error}); mark it by hand, and tell us")
+    remark = said.format(error=type(problem).__name__)
+    return replace(lost(question, remark, written), kinds=(FAULT,))
+
+
 def missing(question: Question) -> Outcome:
     """No answer."""
     return Outcome(question.id, MISSING, 0.0, question.points)
@@ -142,6 +151,11 @@ class Mark(Told):
         return round(math.fsum(outcome.points for outcome in self.outcomes), 6)
 
     @property
+    def failed(self) -> bool:
+        """Whether kinlab itself failed on any of its answers."""
+        return any(FAULT in outcome.kinds for outcome in self.outcomes)
+
+    @property
     def of(self) -> float:
         """The points of a submission with everything right."""
         return round(math.fsum(outcome.of for outcome in self.outcomes), 6)
@@ -172,12 +186,14 @@ class Marks:
         marks: one for each student, in the order of their ids.
         feedback: how much is told.
         not_read: files beside the submissions that are of another kind.
+        withdrawn: of how many earlier submissions that are no longer there the pages were removed.
     """
 
     sheet: Sheet
     marks: tuple[Mark, ...]
     feedback: str
     not_read: tuple[str, ...] = ()
+    withdrawn: int = 0
 
     def __getitem__(self, student: str) -> Mark:
         return _called("student", student, {mark.student: mark for mark in self.marks[::-1]})
@@ -199,6 +215,17 @@ class Marks:
         """What a teacher should hear at once: files that are not read, and why."""
         lines = [mark.stranger for mark in self.marks if mark.stranger]
         lines += [mark.unread for mark in self.marks if mark.unread]
+        for mark in self.marks:
+            if mark.failed and not mark.unread:
+                said = _("{file}: kinlab itself failed on an answer; mark it by hand, and tell us")
+                lines.insert(0, said.format(file=mark.file))
+        if self.withdrawn:
+            said = ngettext(
+                "the page of {count} earlier submission that is no longer there was removed",
+                "the pages of {count} earlier submissions that are no longer there were removed",
+                self.withdrawn,
+            )
+            lines.append(said.format(count=self.withdrawn))
         if self.not_read:
             said = _("not read: {names}").format(names=several(self.not_read))
             lines.insert(0, said)

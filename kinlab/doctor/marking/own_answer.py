@@ -36,7 +36,7 @@ from kinlab.formulas.typeset import equation
 from kinlab.host.language import _
 from kinlab.tolerances import TOLERANCES
 
-_STATES = 60
+_STATES, _NEAR = 60, TOLERANCES.bare_number
 _NUMBERS = range(1, 10)
 """What joints are counted with."""
 _TYPESET = re.compile(r"[\\_{}]")
@@ -221,6 +221,8 @@ class _Beside:
     def _to_digits(self, hand: Array, truth: Array, at: Mapping[str, Array]) -> bool:
         """Whether it is right with rounded numbers, its own or those of the model."""
         text, model = self.text, self.model_text
+        if not tree.names(self.mine) and np.max(relative_errors(hand, truth)) > _NEAR:
+            return False  # of factors, too: 4*10*0.6 is one number
         if not any(one.whole for one in model.literals) and bare_number(model, at, hand):
             return True
         met = bare_number(text, at, truth)

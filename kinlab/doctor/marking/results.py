@@ -14,6 +14,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+from collections.abc import Container
 from pathlib import Path
 from typing import Any
 
@@ -24,8 +25,31 @@ from kinlab.errors import FileError
 from kinlab.host.files import write_text
 from kinlab.host.language import _
 
+RECORDS = ".records"
+"""The folder of what a run that was stopped goes on from, beside the pages."""
 _FORMULA = (*"=+-@\t\r\n|%＝＋－＠",)
 """What a spreadsheet would take for the beginning of a formula or a command, in any width."""
+
+
+def withdraw(folder: Path, here: Container[str]) -> int:
+    """Removes what an earlier run wrote of submissions that are no longer there; counts them.
+
+    Args:
+        folder: of the marks.
+        here: what the pages of this run's submissions are called.
+
+    Raises:
+        FileError: a file cannot be removed.
+    """
+    gone = [one for one in (folder / RECORDS).glob("*.json") if one.stem not in here]
+    try:
+        for record in gone:
+            for path in (folder / "students", ".html"), (folder / "results", ".json"):
+                (path[0] / f"{record.stem}{path[1]}").unlink(missing_ok=True)
+            record.unlink()
+    except OSError as problem:
+        raise FileError(f"{folder}: cannot be written ({problem.strerror})") from None
+    return len(gone)
 
 
 def write_marks(marks: Marks, folder: Path) -> None:

@@ -20,11 +20,11 @@ from typing import Any
 from kinlab.arrays import shown, whole, word
 from kinlab.doctor.marking.handout import students_of
 from kinlab.doctor.marking.judge import judge
-from kinlab.doctor.marking.marks import Mark, Marks, Outcome, lost, slug_of
+from kinlab.doctor.marking.marks import Mark, Marks, Outcome, failed, lost, slug_of
 from kinlab.doctor.marking.own_answer import check_answers
 from kinlab.doctor.marking.pages import pictures_of
 from kinlab.doctor.marking.program import judge_program
-from kinlab.doctor.marking.results import write_marks
+from kinlab.doctor.marking.results import RECORDS, withdraw, write_marks
 from kinlab.doctor.marking.sheet import FEEDBACK, Sheet, SheetError, read_sheet, sheet_of
 from kinlab.doctor.marking.students import by_student, not_read, with_not_read, with_strangers
 from kinlab.doctor.marking.submission import (
@@ -47,7 +47,6 @@ SECONDS = 90.0
 """Clock time of one submission, after which it is given up."""
 
 _MEMORY = 6 << 30
-_RECORDS = ".records"
 _FORM = 2
 """Of what is kept of a run; one in another form is not gone on with."""
 
@@ -97,8 +96,10 @@ def mark(
     others = not_read(submissions) if isinstance(submissions, (str, Path)) else []
     students = with_strangers(with_not_read(by_student(done), others), known)
     marks = Marks(read, tuple(students), level, tuple(others))
-    if output is not None:
-        write_marks(marks, Path(output))
+    if output is None:
+        return marks
+    marks = replace(marks, withdrawn=withdraw(Path(output), {one.slug for one in done}))
+    write_marks(marks, Path(output))
     return marks
 
 
@@ -150,7 +151,7 @@ def _of_files(
         paths = found_in(submissions)
     else:
         root, paths = None, _paths(submissions)
-    records = Path(output) / _RECORDS if output is not None else None
+    records = Path(output) / RECORDS if output is not None else None
     if records is not None:
         try:
             records.mkdir(parents=True, exist_ok=True)
@@ -166,7 +167,7 @@ def _of_files(
     left = [path for path in paths if path not in done]
     for path, mark_ in _worked(work, left, workers):
         done[path] = mark_
-        if records is not None:
+        if records is not None and not mark_.failed:
             record = {"print": prints[path], "mark": _as_record(mark_)}
             write_text(records / f"{mark_.slug}.json", json.dumps(record, ensure_ascii=False))
         if progress is not None:
@@ -217,7 +218,8 @@ class _Work:
         except KinlabError as problem:
             return _unread(self.sheet, shown, who, str(problem), slug)
         except Exception as problem:  # noqa: BLE001  as in judge
-            return _unread(self.sheet, shown, who, f"{shown}: {type(problem).__name__}", slug)
+            outcomes = [failed(question, problem) for question in self.sheet.questions]
+            return Mark(shown, safe(who), "", tuple(outcomes), outcomes[0].remark, slug)
 
 
 def _finished(file: str, submission: Submission, outcomes: tuple[Outcome, ...], slug: str) -> Mark:

@@ -238,6 +238,9 @@ def _question(
             quantity = _asked(row, entry, robot, place)
     except KinlabError as problem:
         raise SheetError(str(problem) if place in str(problem) else f"{place}: {problem}") from None
+    if "tolerance" in row and given != ["answer"]:
+        said = _("tolerance goes with an answer of your own; an entry is compared with the engine")
+        raise _refused(place, said)
     points = _number(row, "points", 1.0, place)
     if points > 1e4:
         raise _refused(place, _("points is {value:g}; at most 10000"), value=points)
@@ -272,10 +275,20 @@ def _asked(row: Mapping[str, Any], entry: str, robot: Mechanism, place: str) -> 
     if not quantity:
         quantity = whole_claimed(entry, robot) or claimed_of(entry, robot)
     plain, index = split_name(quantity)
+    kind = find_quantity(plain)
+    if kind.read is not None and index:
+        said = _(
+            "{entry}: joint positions are judged together, by where they put the tool; write "
+            "quantity = {quantity}, without entry"
+        )
+        raise _refused(place, said, entry=repr(entry or quantity), quantity=f'"{plain}"')
+    if any(isinstance(k, int) and k < 0 for k in index):
+        said = _("there is no {entry}: entries of matrices are counted from 1")
+        raise _refused(place, said, entry=repr(entry or quantity))
     if any(isinstance(k, slice) for k in index):
         said = _("{quantity} is a range; ask for one entry, or for all")
         raise _refused(place, said, quantity=quantity)
-    if find_quantity(plain).domain is not domain_of(robot):
+    if kind.domain is not domain_of(robot):
         said = _("{quantity} is no quantity of {robot}; give an answer")
         raise _refused(place, said, quantity=plain, robot=robot.name)
     try:

@@ -24,9 +24,34 @@ def by_student(marks: Iterable[Mark]) -> list[Mark]:
         marks: one for each file.
     """
     students: dict[str, list[Mark]] = {}
-    for one in sorted(marks, key=lambda m: (m.student.casefold(), m.file.casefold(), m.file)):
+    for one in sorted(
+        _under_own_names([*marks]), key=lambda m: (m.student.casefold(), m.file.casefold(), m.file)
+    ):
         students.setdefault(one.student.casefold(), []).append(one)
     return [files[0] if len(files) == 1 else _together(files) for files in students.values()]
+
+
+def _under_own_names(marks: Sequence[Mark]) -> list[Mark]:
+    """The marks, those under a name whose own folder is another under their folder's name.
+
+    Nobody's answers count in place of those in another's folder.
+    """
+    owned = {one.student.casefold() for one in marks if _folder(one) == one.student.casefold()}
+    result = []
+    for one in marks:
+        folder = _folder(one)
+        if folder and folder != one.student.casefold() in owned:
+            said = _("the file says {student}, who has a folder: its own folder's name is taken")
+            note = joined(one.note, said.format(student=one.student))
+            one = replace(one, student=Path(one.file).parts[0], note=note)
+        result.append(one)
+    return result
+
+
+def _folder(mark: Mark) -> str:
+    """The folder of a submission; empty where all are in one."""
+    parts = Path(mark.file).parts
+    return parts[0].casefold() if len(parts) > 1 else ""
 
 
 def _together(files: Sequence[Mark]) -> Mark:

@@ -111,6 +111,7 @@ KINDS: dict[str, str] = {
     N_("before the loop"): N_("a line stands before a loop and belongs in it"),
     N_("rows"): N_("other rows or columns are taken"),
     N_("product"): N_("a product of matrices and one of entries are mixed"),
+    N_("cross product"): N_("the cross product and the dot product are exchanged"),
     N_("kind of joint"): N_("a slide is treated as a hinge, or a hinge as a slide"),
     N_("missing entry"): N_("an entry is not set"),
     N_("missing matrix"): N_("a product with a matrix is missing"),
@@ -137,6 +138,7 @@ _SAID = {
     **KINDS,
     "unread": N_("could not be read"),
     "missing entries": N_("entries are missing"),
+    "fault": N_("kinlab itself failed"),
     "no value": N_("it gives zero everywhere, or no number"),
 }
 

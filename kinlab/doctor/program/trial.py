@@ -49,6 +49,8 @@ class FailedError(Exception):
     """A program ended with an error of its own."""
 
 
+_MAKING = ("__init__", "__post_init__", "__new__")
+"""Methods that run when an object is made."""
 _DEEPEST = 2
 """Lists in lists of which it is told whether they are the same."""
 _REMEMBERED = 20_000
@@ -168,9 +170,19 @@ class Trial:
             entry = self._entry()
         held = closed(entry) if isinstance(entry, FunctionType) else {}
         was, making = self.program.space, self.program.making
-        same = all(alike(self.space.get(name), was[name]) for name in self.sets)
+        later = self._set_later()
+        same = all(alike(self.space.get(x), was[x], without=later) for x in self.sets)
         before = {} if making is None else making.closed
         return same and all(name in held and alike(held[name], x) for name, x in before.items())
+
+    def _set_later(self) -> set[str]:
+        """The attributes that objects are given when the function is asked, and not when made."""
+        asked = zip(self.program.parts, self.trees, strict=True)
+        inner = (x for part, tree in asked if part.name not in _MAKING and not part.sets
+                 for x in nodes(tree))  # fmt: skip
+        return {
+            x.attr for x in inner if isinstance(x, ast.Attribute) and isinstance(x.ctx, ast.Store)
+        }
 
     def _entry(self) -> Any:
         """The function that is asked: the first part, or what that makes."""

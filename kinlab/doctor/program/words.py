@@ -78,6 +78,7 @@ _WHAT = {
     "function": N_("the function is another"),
     "operator": N_("a sum stands for a product, or a product for a sum"),
     "product": N_("it is a matrix product"),
+    "cross product": N_("the cross product and the dot product are exchanged"),
     "sum": N_("the sum forgets what was there before"),
     "extra statement": N_("the line is one too many"),
     "extra term": N_("a term is too many"),

@@ -267,7 +267,7 @@ def _checked(line: Line, found: list[tuple[int, ...]], words: int = _LONG) -> It
     seen: set[str] = set()
     for way in found:
         changes = tuple(sorted((line.changes[k] for k in way), key=lambda c: (c.start, c.end)))
-        if _overlap(_nested(line.source, changes)):
+        if _overlap(_nested(line.source, changes)) or _is_written_anew(line, way):
             continue
         text = rewritten(line.source, changes)
         if text is None or text in seen:
@@ -280,6 +280,17 @@ def _checked(line: Line, found: list[tuple[int, ...]], words: int = _LONG) -> It
             gap = np.max(np.abs(values - line.target))
         if gap <= TOLERANCES.effect_matches * line.scale:
             yield Mended(changes, text, _cost(changes))
+
+
+def _is_written_anew(line: Line, way: Sequence[int]) -> bool:
+    """Whether one of several changes puts all of the right formula in, and others take it away."""
+    several = [k for k in way if k < len(line.rows)] if len(way) > 1 else []
+    allowed = TOLERANCES.effect_matches * line.scale
+    return any(
+        line.changes[k].kind == "missing term"
+        and float(np.max(np.abs(line.rows[k] - line.target))) <= allowed
+        for k in several
+    )
 
 
 def _same_formula(changes: tuple[Change, ...]) -> bool:

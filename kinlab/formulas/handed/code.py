@@ -12,6 +12,8 @@ from kinlab.formulas.signs.brackets import closes, outside, parts_at
 
 _FENCE = re.compile(r"^\s*```[\w+-]*\s*\n(.*?)\n?\s*```\s*$", re.DOTALL)
 _TICKS = re.compile(r"^\s*`([^`]+)`\s*[.;]?\s*$")
+_GOES_ON = re.compile(r"[ \t]*(?:\.{3}[^\n]*|(?<!\\)\\[ \t]*)\n\s*")
+"""The end of a line that goes on in the next one, in MATLAB and in Python."""
 _NOTES = re.compile(r"/\*.*?\*/|\(\*.*?\*\)", re.DOTALL)
 _COMMENT = re.compile(
     r"[ \t]//(?:[ \t]*(?!(?:sin|cos|tan|sqrt)\b)[A-Za-z\u4e00-\u9fff',.:-]+)+[ \t]*$", re.MULTILINE
@@ -58,6 +60,7 @@ def without_code(text: str, alone: bool) -> str:
         text: as typed.
         alone: whether it is one number, no vector and no matrix.
     """
+    text = _GOES_ON.sub(" ", text)
     for around in (_FENCE, _TICKS):
         found = around.match(text)
         text = found[1] if found else text

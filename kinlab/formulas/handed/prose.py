@@ -60,9 +60,12 @@ _ORDINAL = re.compile("第[一二三四1-9]轴")
 """A joint, where a number says which."""
 _MOST = 60
 _CONDITION = re.compile(
-    r"(?<![\w*/+-])(?:(?:theta|vartheta|θ|ϑ|th|q)[d']{0,2}[1-9₁-₉]?\s*=\s*(?:[-±]?\s*(?:\d|π|pi\b))"
+    r"(?<![\w*/+-])(?:(?:theta|vartheta|θ|ϑ|th|q)[d']{0,2}[1-9₁-₉]?\s*:?=\s*(?:[-±]?\s*(?:\d|π|pi\b))"
+    r"|[lmI]c?[1-9]\s*=\s*0(?![\w.])"
     r"|(?P<letter>[lLmI])[1-9]\s*=\s*(?P=letter)[1-9](?![\w*/+-]|\s*[*/^+-]))"
 )
+_ALONE = re.compile(r"[\d.]*°?(?:\s*/\s*\d+)?\s*(?:$|[,;，；\n)])")
+"""What ends a number."""
 _INERTIA = re.compile(
     r"\b(?:mass\s+)?(?:moments?\s+of\s+)?inertias?\b(?:[^,;=]*\b(?:cent(?:re|er)s?|of|mass(?:es)?|gravity|centroids?)\b)?"
     r"|\b(?:massen)?trägheitsmomente?\b(?:[^,;=]*\bschwerpunkte?[sn]?\b)?|(?:绕|对|关于)?质心的?转动惯量|转动惯量",
@@ -78,9 +81,8 @@ _TURNED = re.compile(
 )
 """Words that may tell of another axis, frame or sense of turning."""
 _UP_TO = re.compile(
-    r"\bup to (?:the |a |its )?(?:\w+ )?(?:sign|factor|constant|scale|order)\w*"
-    r"|\bbis auf (?:das |den |die |einen |eine |ein )?(?:\w+ )?(?:vorzeichen|faktor|konstante)\w*"
-    r"|(?:相差|差|除了|除)一?个?(?:正负|负)?(?:符号|号|系数|常数|因子)|符号相反",
+    r"\bup to (?:the |a |an |its )?(?:\w+ )?constant\w*"
+    r"|\bbis auf (?:die |eine )?(?:\w+ )?konstante\w*|(?:相差|差|除了|除)一?个?常数",
     re.IGNORECASE,
 )
 _ELSEWHERE = re.compile(
@@ -94,6 +96,7 @@ _ELSEWHERE = re.compile(
     re.IGNORECASE,
 )
 """Moments of inertia about another point than the robot's are."""
+_NOT = re.compile(r"\bnot\b|\bnicht\b|不|非", re.IGNORECASE)
 _OTHER_FRAME = re.compile(
     r"\b(?:in|into|with respect to|relative to) (?:the |its |their )?"
     r"(?:tool|hand|end-?effector|tcp|body|link|moving|local|own)(?:'s)?[ -]"
@@ -156,7 +159,7 @@ def explained_by(text: str) -> str:
             found += [one for one in _of(behind, BEHIND, typeset) if not _used(one[0], text)]
             if _ANGLE.search(behind) and _LINK.search(behind) and not _JOINT.search(behind):
                 found.append(("", behind.strip()[:_MOST]))  # the angle of link 2 may be a sum
-            found += [("", clause) for clause in _to_elsewhere(_flat(behind))]
+            found += [("", clause) for clause in _to_elsewhere(flat(behind))]
     return found[0][1] if found else ""
 
 
@@ -179,7 +182,7 @@ def _shares(text: str, own: bool = False) -> list[str]:
         own: only of what is no share itself: ``lc1 is half of l1`` is true of a rod.
     """
     found = []
-    for clause in _CLAUSE.split(_WHERE.sub(";", _flat(text))):
+    for clause in _CLAUSE.split(_WHERE.sub(";", flat(text))):
         name = _OWN.search(clause)
         if name and (name["own"] or not own) and _SHARE.search(clause):
             found.append(clause.strip()[:_MOST])
@@ -191,6 +194,16 @@ def outside_formulas(text: str) -> list[str]:
     return [prose for prose, _typeset in _proses(text)]
 
 
+def moment_elsewhere(text: str) -> str:
+    """What says of a name in the formula that it is a moment of inertia about another point."""
+    plain = flat(text)
+    found = _ELSEWHERE.search(plain)
+    name = re.match(r"I[a-z]{0,2}_?\d", found[0]) if found else None
+    if found is None or name is None or _NOT.search(found[0]) or plain.count(name[0]) < 2:
+        return ""
+    return found[0][:_MOST]
+
+
 def _used(word: str, text: str) -> bool:
     """Whether a word is a name in the formula."""
     name = rf"(?<![A-Za-z]){re.escape(word)}(?![A-Za-z])"
@@ -199,28 +212,32 @@ def _used(word: str, text: str) -> bool:
 
 def condition_in_front(text: str, entry: str) -> bool:
     """Whether an equation in front of the formula says when it holds: ``for q2 = 0``."""
-    flat = _flat(text)
-    found = _CONDITION.search(flat)
+    plain = flat(text)
+    found = _CONDITION.search(plain)
     if found is None:
         return False
-    front = flat[: found.start()]
-    name = rf"(?<!\w){re.escape(_flat(entry))}\s*="
+    front = plain[: found.start()]
+    name = rf"(?<!\w){re.escape(flat(entry))}\s*="
     return not re.search(rf"[*^]|{name}", front) and _words_in(front)
 
 
 def is_condition(equation: str) -> bool:
     """Whether an equation says when a formula holds, and no name's meaning: ``q2 = 0``."""
-    return bool(_CONDITION.match(_flat(equation).strip()))
+    return bool(_CONDITION.match(flat(equation).strip()))
 
 
 def _conditions(text: str) -> list[tuple[str, str]]:
-    """Equations that say when a formula holds: ``q2 = 0``, ``l_1 = l_2``."""
-    if not _words_in(text):
-        return []
-    return [(one[0], one[0]) for one in _CONDITION.finditer(_flat(text))]
+    """Equations that say when a formula holds: ``q2 = 0``, ``l_1 = l_2``.
+
+    Without words, only what nothing but a number is said of: no ``theta1 = 2*atan(...)``.
+    """
+    plain, words = flat(text), _words_in(text)
+    found = _CONDITION.finditer(plain)
+    return [(one[0], one[0]) for one in found if words or _ALONE.match(plain, one.end())]
 
 
-def _flat(text: str) -> str:
+def flat(text: str) -> str:
+    """A text without braces, dollars, dots over letters and what stands below the line."""
     return re.sub(r"[{}_\\$]|d{1,2}ot\b\s*", "", text)
 
 

@@ -38,6 +38,9 @@ _WAYS = tuple(
     )
 )  # fmt: skip
 _POINTS = re.compile(r"(?<![\w.\\])(q|th|theta)_?(?:(\d)_?(p{1,2})|(p{1,2})_?(\d))(?!\w)")
+_PRIMES = re.compile(r"(?<![\w.\\])(q|th|theta|θ)\s?(''|′′|″|['′])(?![\w'′″])")
+_CALLED = re.compile(r"(?<![\w.\\])(d{1,2})ot\(\s*(q|th|theta|θ)_?(\d?)\s*\)")
+"""Of an arm's only joint too: ``theta''``, ``ddot(theta)``."""
 _POINT_IN_WAVE = re.compile(r"(?:sin|cos|tan)\([^()]*(?:q|th|theta)_?\d_?p{1,2}(?!\w)")
 """q1p in a cosine is an angle."""
 _ORDERS = re.compile(r"(?<![\w.\\])D([12]?)(q|th|theta)_?(\d)(?!\w)")
@@ -60,10 +63,21 @@ def plain_rates(text: str) -> str:
     if not typeset:
         if not _POINT_IN_WAVE.search(text):
             text = _POINTS.sub(lambda found: _of_points(found, own), text)
+        text = _PRIMES.sub(_of_primes, text)
+        text = _CALLED.sub(lambda found: f"{_plain(found[2])}{found[1]}{found[3]}", text)
         text = _ORDERS.sub(lambda found: _of_orders(found, own), text)
         if _ANGLES.search(text) and not _TIMES.search(text):
             text = _OF_ANGLES.sub(lambda found: _of_letters(found, own), text)
     return text
+
+
+def _of_primes(found: re.Match[str]) -> str:
+    once = found[2] in ("'", "′")
+    return _plain(found[1]) + ("d" if once else "dd")
+
+
+def _plain(head: str) -> str:
+    return "theta" if head == "θ" else head
 
 
 def _of_letters(found: re.Match[str], own: set[str]) -> str:
@@ -76,7 +90,7 @@ def _named(found: re.Match[str], order: int, typeset: bool) -> str:
         head = head if head in ("q", r"\theta") else r"\theta"
         below = f"_{joint}" if len(joint) == 1 else f"_{{{joint}}}"
         return f"{_DOTS[order]}{{{head}}}{below}" if order else f"{head}{below}"
-    return f"{'theta' if head == 'θ' else head}{'d' * order}{joint}"
+    return f"{_plain(head)}{'d' * order}{joint}"
 
 
 def _of_points(found: re.Match[str], own: set[str]) -> str:

@@ -12,9 +12,18 @@ from decimal import Decimal
 from kinlab.formulas.signs.refusals import refused
 from kinlab.host.language import N_
 
+Size = tuple[int, int, int]
+"""Powers of metre, kilogram and second."""
 _SIZES = {
     **{"m": (1, 0, 0), "kg": (0, 1, 0), "s": (0, 0, 1), "rad": (0, 0, 0)},
-    **{"N": (1, 1, -2), "J": (2, 1, -2), "Nm": (2, 1, -2), "Nms": (2, 1, -1), "kgm": (1, 1, 0)},
+    **{
+        "N": (1, 1, -2),
+        "J": (2, 1, -2),
+        "W": (2, 1, -3),
+        "Nm": (2, 1, -2),
+        "Nms": (2, 1, -1),
+        "kgm": (1, 1, 0),
+    },
 }
 """Powers of metre, kilogram and second in each unit."""
 _ENTRIES = (
@@ -122,11 +131,55 @@ def without_units(text: str, entry: str, place: str) -> str:
     return _AT_END.sub(lambda found: _behind(found, text, wanted), text)
 
 
+_WRITTEN_OUT = (
+    (re.compile(r"\bnew?tons?\b|牛顿?", re.IGNORECASE), "N"),
+    (re.compile(r"\bmet(?:er|re)s?\b|米", re.IGNORECASE), "m"),
+    (re.compile(r"\b(?:kilograms?|kilogramm|kilos?)\b|千克|公斤", re.IGNORECASE), "kg"),
+    (re.compile(r"\bradians?\b|\bradiant\b|弧度", re.IGNORECASE), "rad"),
+    (re.compile(r"\bseconds?\b|\bsekunden?\b|秒", re.IGNORECASE), "s"),
+    (re.compile(r"\bjoules?\b|焦耳?", re.IGNORECASE), "J"),
+    (re.compile(r"\bdegrees?\b|\bgrad\b|°|度", re.IGNORECASE), "deg"),
+    (re.compile(r"\\cdot|[·⋅∙•⸱⋆×*~-](?!\d)"), " "),
+)
+_THOUSANDS = {"k": "1000", "M": "1000000", "m": "0.001", "c": "0.01", "d": "0.1"}
+_TURN = "pi/180"
+
+
+def measured(unit: str) -> tuple[Size | None, str]:
+    """The size of a unit as people write it, and what a number in it is to be multiplied with.
+
+    Of what is no unit the size is None.
+    """
+    plain = unit
+    for pattern, short in _WRITTEN_OUT:
+        plain = pattern.sub(short, plain)
+    plain = plain.replace("%", "?").strip(" .")
+    if plain == "deg":
+        return (0, 0, 0), f"({_TURN})"
+    factor = Decimal(1)
+    found = re.match(r"(kN|MN|mN|kJ|mJ|km|cm|mm|dm)(?=m?(?![A-Za-z]))", plain)
+    if found:
+        factor, plain = Decimal(_THOUSANDS[found[0][0]]), found[0][1:] + plain[found.end() :]
+    elif plain == "g":
+        factor, plain = Decimal("0.001"), "kg"
+    tail = re.search(r"(?<=N)(\s?)(mm|cm)$", plain)
+    if tail:
+        factor, plain = factor * Decimal(_THOUSANDS[tail[2][0]]), plain[: tail.start()] + "m"
+    if not re.fullmatch(r"(?:[A-Za-z]+(?:\s?(?:\^|\*\*)\s?-?\d|[²³]|⁻[¹²])?[\s/]*)+", plain):
+        return None, ""
+    return _size(plain), f"{factor:f}"
+
+
+def size_of_name(name: str) -> Size | None:
+    """The powers of metre, kilogram and second in what a name is, by its letter."""
+    return next((size for pattern, size in _NAMES if pattern.fullmatch(name)), None)
+
+
 def _inside(found: re.Match[str]) -> str:
     return f" {found[1]}"
 
 
-def _size(unit: str) -> tuple[int, int, int] | None:
+def _size(unit: str) -> Size | None:
     """The powers of metre, kilogram and second in a unit; None where its sign is unclear."""
     plain = re.sub(r"\\cdot|\\[,;:! ]|~", " ", unit)
     plain = plain.replace("²", "^2").replace("³", "^3").replace("⁻¹", "^-1").replace("⁻2", "^-2")
@@ -170,7 +223,7 @@ def _as_number(found: re.Match[str], length: bool) -> str:
     ``h = 2 m`` may be two masses, unless the whole is a length.
     """
     unit, name = _unit(found), found["name"].lstrip("\\")
-    wanted = next((size for pattern, size in _NAMES if pattern.fullmatch(name)), None)
+    wanted = size_of_name(name)
     if wanted is None or (found["d"] == "m" and not length and name[0] not in "lLg"):
         return found[0]
     if unit == "deg":

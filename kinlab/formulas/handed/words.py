@@ -9,10 +9,17 @@ from __future__ import annotations
 import re
 
 from kinlab.errors import ExpressionError
-from kinlab.formulas.handed.prose import around, condition_in_front, explained_by, outside_formulas
+from kinlab.formulas.handed.prose import (
+    around,
+    condition_in_front,
+    explained_by,
+    flat,
+    moment_elsewhere,
+    outside_formulas,
+)
 from kinlab.formulas.handed.sentences import without_sentences
 from kinlab.formulas.signs.refusals import refused
-from kinlab.formulas.typed import entry_name, of_one_name
+from kinlab.formulas.typed import begins_with, entry_name, of_one_name
 from kinlab.host.language import N_
 
 _HEAD = re.compile(r"^([A-Za-z][\w ]{0,20}?)\s*:(?![=:])\s*(?=\S)")
@@ -21,23 +28,38 @@ _OTHERWISE = re.compile(
     r"|\b(?:measured|absolute[rn]?|relative|verti[ck]al\w*|horizontal\w*(?!\s+plane)|gemessen|misst"
     r"|senkrechte?n?"
     r"|waagerecht|grad|degrees?(?!\s+of\s+freedom)|wrong\w*|incorrect\w*|mistak\w*|false"
-    r"|falsch\w*)\b",
+    r"|falsch\w*|per\s+(?:unit|kg|kilogram|met(?:er|re))|pro\s+(?:kg|einheit|meter|masse\w*))\b"
+    r"|\b(?:not|n['’]t|never)\s+(?:\w+\s+){0,2}"
+    r"(?:correct|right|true|valid|equal\w*|holds?|appl(?:y|ies)|the\s+case)\b"
+    r"|\b(?:should|must|ought|can|may)(?:\s+not|n['’]t)\s+(?:\w+\s+)?be\s+(?!\w+ed\b)"
+    r"|\bnicht\s+(?:\w+\s+){0,2}(?:richtig|korrekt|wahr|gültig|gleich|zutreffend)\b"
+    r"|\b(?:stimmt|gilt|passt)\s+(?:\w+\s+)?nicht\b"
+    r"|\bup\s+to\s+(?:the\s+|a\s+|its\s+)?(?:\w+\s+)?(?:sign|factor|scale|order)\w*"
+    r"|\bbis\s+auf\s+(?:das\s+|den\s+|einen\s+|ein\s+)?(?:\w+\s+)?(?:vorzeichen|faktor)\w*"
+    r"|(?:相差|差|除了|除)一?个?(?:正负|负)?(?:符号|号|系数|因子)|符号相反|单位质量|单位长度"
+    r"|(?:单位[:：为是]*|以)(?:度|毫米|厘米)",
     re.IGNORECASE,
 )
 """Words that say what a name means in another way than the robot's, or that a formula is none."""
+_COORDINATE = re.compile(
+    r"(?<![\w*/^+-])([xyz](?:[ ,/-]{0,2}(?:and|und|bzw\.|和|与|、)?[ -]{0,2}[xyz]\b){0,2})[ -]{0,2}"
+    r"(?:coordinates?|components?|positions?|koordinaten?|komponenten?|坐标|分量)",
+    re.IGNORECASE,
+)
 _FORMULA = re.compile(r"[=*^]")
 """Where a formula begins, or its name ended."""
 _HARMLESS_NOT = "depend|contain|appear|matter|change|enter|vary"
 _DENIED = re.compile(
     r"\b(?:if|falls|wenn|assum\w+|never|unless|kein\w*"
-    rf"|(?:not|nicht)(?!\s+(?:{_HARMLESS_NOT})))\b|如果|假设|n['’]t\b"
+    rf"|(?:not|nicht)(?!\s+(?:{_HARMLESS_NOT})))\b|如果|假设|n['’]t\b(?!\s+forget)"
     r"|(?:\\?\b(?:theta|th|q)|[θϑ])_?\{?[\d₀-₉]+\}?\s*"
     r"(?:为|是|表示|is\b|are\b|denotes\b|means\b)",
     re.IGNORECASE,
 )
 """The same, in front of a formula alone."""
 _MORE = re.compile(
-    r"\b(?:plus|minus|times|twice|multiplied|divided|except|apart|without|zuzüglich|abzüglich|ohne|außer"
+    r"\b(?:plus|minus|times|(?<!checked )(?<!verified )twice|multiplied|divided|except"
+    r"|apart|without|zuzüglich|abzüglich|ohne|außer"
     r"|mal|geteilt)\b|加上|减去|乘以|除以|再加|再乘",
     re.IGNORECASE,
 )
@@ -74,6 +96,9 @@ def _refuse_meanings(text: str, entry: str, place: str) -> None:
         if found:
             said = N_("{words!r} beside the formula may change what its names mean; leave it out")
             raise refused(place, said, words=around(prose, *found.span()))
+    if said_otherwise := _of_another_coordinate(text, entry) or moment_elsewhere(text):
+        said = N_("{words!r} beside the formula is not what it is asked for; leave it out")
+        raise refused(place, said, words=said_otherwise)
     if _DENIED.search(_FORMULA.split(text)[0]) or condition_in_front(text, entry):
         said = N_("{words!r} in front of the formula may change what its names mean; leave it out")
         raise refused(place, said, words=text.strip()[:60])
@@ -83,6 +108,15 @@ def _refuse_meanings(text: str, entry: str, place: str) -> None:
             "write name = formula"
         )
         raise refused(place, said, words=words)
+
+
+def _of_another_coordinate(text: str, entry: str) -> str:
+    """Words that say that it is another coordinate than the entry's; empty where none do."""
+    own = {one for one in "xyz" if begins_with(f"{one} =", entry)}
+    for found in _COORDINATE.finditer(flat(text)) if own else ():
+        if own.isdisjoint(found[1].lower()):
+            return found[0]
+    return ""
 
 
 def _is_name(text: str, entry: str) -> bool:

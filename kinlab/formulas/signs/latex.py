@@ -21,8 +21,10 @@ _WORD = (
     r"\\(?:mathrm|mathcal|mathit|mathsf|mathbf|mathfrak|boldsymbol|bm|text|textrm|textit|operatorname)"
     r"(?![A-Za-z])\*?\s*\{[A-Za-z0-9_ ]*\}"
 )
+_OWN = r"(?<![A-Za-z\\])(?:[xyz]t(?![A-Za-z])|(?:Ia|I[xyz]{2}|c[xyz]|lc)(?=\d))"
+"""Names of an arm's own numbers, typed as they are: the tool's ``xt``, ``Izz4``, ``cx4``."""
 _TOKEN = re.compile(
-    rf"{_WORD}|\\[A-Za-z]+|\\.|\d+(?:(?:\.|\{{,\}})\d+)?|(?:sin|cos|tan|sqrt|atan2)(?![A-Za-z])"
+    rf"{_WORD}|{_OWN}|\\[A-Za-z]+|\\.|\d+(?:(?:\.|\{{,\}})\d+)?|(?:sin|cos|tan|sqrt|atan2)(?![A-Za-z])"
     r"|[A-Za-z]|[-+*/^_{}()\[\]=,&|.~]|\s+",
     re.ASCII,
 )
@@ -453,7 +455,7 @@ class _Reader:
         if token == r"\ell":
             self.take()
             return "l"
-        if token in _GREEK or (len(token) == 1 and token.isalpha()):
+        if token in _GREEK or (token.isalpha() and not self.called() and token != "sqrt"):
             return _GREEK.get(self.take(), token)
         raise self.unread()
 

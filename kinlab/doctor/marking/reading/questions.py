@@ -12,6 +12,7 @@ from kinlab.check.diagnosis import ENTRY_LETTERS, shown_entry
 from kinlab.check.quantities.registry import split_name
 from kinlab.doctor.linkages.named_numbers import named_numbers
 from kinlab.doctor.marking.reading.labels import SheetLabels
+from kinlab.doctor.marking.reading.measured import without_unit
 from kinlab.doctor.marking.reading.pieces import Piece, is_no_answer
 from kinlab.doctor.marking.sheet import Question, Sheet
 from kinlab.doctor.text.claims import claimed_of, whole_claimed
@@ -34,6 +35,8 @@ from kinlab.host.language import _
 _WORD = re.compile(r"[A-Za-z]\w*")
 _OWN = re.compile(r"(?!(?:q|qd|qdd|th|theta|[cs])\d)[A-Za-z]\w*")
 _JOINT = re.compile(r"(?:q|qd|qdd|th|theta)_?\d", re.IGNORECASE)
+_OF_TOOL = re.compile(r"([xyz])_?(?:e|ee|eff|tcp|tool|tip|p|t|h|end|hand|gripper)", re.IGNORECASE)
+"""A coordinate with what says of which point it is."""
 _LONGEST = 24
 """Characters of a line that is told."""
 
@@ -260,6 +263,7 @@ def _asked(left: str, sheet: Sheet, writing: Hand) -> tuple[Question | None, str
         return None, ""
     if not name:
         return None, ""
+    name = _coordinate(name)
     for question in sheet.questions:
         if name in (question.entry, question.id, shown_entry(question.quantity), *question.answer):
             return question, name
@@ -275,6 +279,12 @@ def _asked(left: str, sheet: Sheet, writing: Hand) -> tuple[Question | None, str
             if not asked or asked == index:
                 return question, name
     return None, ""
+
+
+def _coordinate(name: str) -> str:
+    """A coordinate without what says of which point it is: x of x_tool; others as they are."""
+    found = _OF_TOOL.fullmatch(name)
+    return found[1].lower() if found else name
 
 
 def _head(question: Question) -> str:
@@ -296,11 +306,12 @@ def as_entries(question: Question, given: Mapping[str, str], sheet: Sheet) -> di
     shown = shown_entry(question.entry)
     named: dict[str, str] = {}
     for name, text in given.items():
-        text = _without_unit(text, question, sheet) if question.answer else text
+        text = without_unit(text, question, sheet) if question.answer else text
         if whole and several(text, default):
             named[default] = text
             continue
         said = claims(without_sentences(text, question.entry), name or default) or name
+        said = _coordinate(said)
         if said in ("", question.id, question.entry, default, shown, _head(question)):
             named[default] = text
             continue
@@ -315,29 +326,6 @@ def as_entries(question: Question, given: Mapping[str, str], sheet: Sheet) -> di
             said = default
         named[said] = text
     return named
-
-
-_UNIT = r"(?:kg|rad|Nm|N|J|W|m|s)(?:(?:\^|\*\*)-?\d|[²³])?"
-_TYPESET = re.compile(r"\$|\\[,;: ]|~|\\(?:mathrm|text|textrm|rm|si|unit)(?![A-Za-z])|[{}]")
-_MEASURED = re.compile(
-    r"\s*(?P<left>[\\A-Za-z][\w\\{}]*\s*=\s*)?(?:about|approx(?:imately|\.)?|roughly|circa|ca\.?|etwa|rund|≈|~|约|大约)?"
-    r"\s*(?P<number>[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?)\s*"
-    rf"(?P<unit>{_UNIT}(?:\s*[ *·/]\s*{_UNIT}){{0,3}})?\s*\.?\s*"
-)
-
-
-def _without_unit(text: str, question: Question, sheet: Sheet) -> str:
-    """A bare number without its SI unit, where no letter of that is a name: ``about 1.15 m``."""
-    plain = _TYPESET.sub(" ", text) if len(text) <= 100 else ""
-    found = _MEASURED.fullmatch(plain)
-    if found is None:
-        return text
-    known = {*named_numbers(sheet.robot)}
-    for one in question.answer.values():
-        known |= {*_WORD.findall(one)}
-    if known & {*_WORD.findall(found["unit"] or "")}:
-        return text
-    return (found["left"] or "") + found["number"]
 
 
 def _right_of(text: str) -> str:

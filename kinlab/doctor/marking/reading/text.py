@@ -15,6 +15,9 @@ _CODE = re.compile(r"`([^`]+)`")
 _STRUCK = re.compile(r"~~.*?~~")
 _RULE = re.compile(r"\s*(?:```.*|~~~.*|[-=*_\s]{3,}|\|?[\s:|-]+\|[\s:|-]*)")
 _ITEM = re.compile(r"\s*(?:[*•·]\s+|[-+–—]\s+(?=[^=]{1,40}=))")
+_GOES_ON = re.compile(r"(?:\.{3}|(?<!\\)\\)[ \t]*$")
+"""The end of a line that goes on in the next one, in MATLAB and in Python."""
+_SIGN = re.compile(r"[*/^+=]")
 _BAR = re.compile(r"(?<!\\)\|")
 _MOST = 200
 """Lines that one formula may go over."""
@@ -66,7 +69,7 @@ def _whole(lines: Sequence[str]) -> Iterator[str]:
         if _is_open(line):
             held = line
             for end in range(k + 1, min(k + _MOST, len(lines))):
-                held += f" {lines[end]}"
+                held = f"{_GOES_ON.sub('', held)} {lines[end]}"
                 if not _is_open(held):
                     break
             line, end = (line, k) if _is_open(held) else (held, end)
@@ -75,6 +78,8 @@ def _whole(lines: Sequence[str]) -> Iterator[str]:
 
 
 def _is_open(text: str) -> bool:
+    if _GOES_ON.search(text) and _SIGN.search(text):
+        return True
     begins, ends = text.count("\\begin{"), text.count("\\end{")
     return bool(text.count("$$") % 2 or begins > ends or text.count("\\[") > text.count("\\]"))
 

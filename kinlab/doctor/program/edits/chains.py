@@ -177,6 +177,17 @@ def crosswise(node: ast.BinOp) -> Iterator[ast.expr]:
                 yield _with((head, [*terms[:-1], tail]), len(terms) - 1, _with(one, j, instead))
 
 
+def crossed(node: ast.BinOp) -> Iterator[ast.expr]:
+    """A product of two vectors in components for the other: ``u[0]*w[1] - u[1]*w[0]`` of
+    ``u[0]*w[0] + u[1]*w[1]``."""
+    sides = node.left, node.right
+    if all(isinstance(x, ast.BinOp) and isinstance(x.op, ast.Mult) for x in sides):
+        other = ast.Sub() if isinstance(node.op, ast.Add) else ast.Add()
+        for new in crosswise(node):
+            if isinstance(new, ast.BinOp):
+                yield ast.BinOp(new.left, other, new.right)
+
+
 def called_once(node: ast.BinOp) -> Iterator[ast.expr]:
     """A function of a sum for a sum of it: ``cos(a + b)`` for ``cos(a) + cos(b)``."""
     left, right = node.left, node.right

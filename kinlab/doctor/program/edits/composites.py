@@ -8,6 +8,7 @@ from functools import reduce
 from itertools import product
 
 from kinlab.doctor.bytecode.syntax import factors, names, nodes, text_of
+from kinlab.doctor.program.edits.chains import chain, joined
 from kinlab.doctor.program.edits.scope.forms import statement_of
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.observed import Observed, Shape
@@ -32,6 +33,8 @@ _BESIDE = 1.06
 """Cost of what the same statement has the parts of."""
 _OF_SUMMANDS = 1.08
 """Cost of the cross product of a rate that is turned and of what is added to it elsewhere."""
+_LAST = 0.005
+"""What a factor of the last matrix of a product costs more."""
 _FEW = 8
 """Angular velocities that are tried; twice as many arms."""
 
@@ -252,11 +255,17 @@ def _next_entry(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
 
 
 def _times_scalars(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
-    """A vector or matrix times a number."""
+    """A vector or matrix times a number, which stands in front of a product of matrices."""
+    node, above = here.node, here.parent
+    matrices = isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult)
+    last = isinstance(getattr(above, "op", None), ast.MatMult) and here.field == "right"
     for text, scalar in scope.simple(()):
         if text not in scope.counters:
-            cost = 1.12 + scope.dear(scalar)
-            new = ast.BinOp(here.node, ast.Mult(), scalar)
+            cost = 1.12 + scope.dear(scalar) + _LAST * last
+            new: ast.expr = ast.BinOp(node, ast.Mult(), scalar)
+            if matrices:
+                first, others = chain(node, (ast.MatMult,))
+                new = joined(ast.BinOp(scalar, ast.Mult(), first), others)
             yield here.instead(new, "missing factor", cost)
 
 

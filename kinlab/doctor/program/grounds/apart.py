@@ -26,6 +26,7 @@ from kinlab.doctor.program.grounds.scaled import (
     ProgramNumber,
     holds_an_arm,
     may_be_of_one_arm,
+    may_be_step,
     moments,
     named_at_will,
     numbers_of,
@@ -204,6 +205,7 @@ class _Reader:
             elif may:
                 if not isinstance(place.value, int):  # a factor, a power
                     plain.append(one.value)
+                self.whole = self.whole and not may_be_step(one.value)  # or a centre's 0.01
             elif one.alone and isinstance(place.value, float) and not place.place:
                 self.whole = self.whole and named_at_will(one.value)
         unknown: dict[Any, list[tuple[ProgramNumber, list[int]]]] = {}

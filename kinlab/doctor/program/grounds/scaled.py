@@ -280,7 +280,7 @@ def twisted_by(table: DHTable, found: Sequence[ProgramNumber]) -> float:
 
 def named_at_will(value: float) -> bool:
     """Whether a number with a name need be nothing of an arm's."""
-    return abs(value) in _NOBODYS or _may_be_step(value) or _turns_degrees(value)
+    return abs(value) in _NOBODYS or may_be_step(value) or _turns_degrees(value)
 
 
 def _turns_degrees(value: float) -> bool:
@@ -532,7 +532,7 @@ def _names_down(place: NumberPlace) -> list[str]:
     return [one for one in place.place if isinstance(one, str)]
 
 
-def _may_be_step(value: float) -> bool:
+def may_be_step(value: float) -> bool:
     return abs(value) <= TOLERANCES.may_be_step
 
 
@@ -542,7 +542,7 @@ def may_be_of_one_arm(value: float) -> bool:
         return False
     parts = _PARTS * value, _PARTS * value / np.pi
     plain = any(abs(x - round(x)) <= TOLERANCES.same_relation * abs(x) for x in parts)
-    return not _may_be_step(value) and not plain and not _turns_degrees(value)
+    return not may_be_step(value) and not plain and not _turns_degrees(value)
 
 
 def _among(value: float, known: Array) -> bool:

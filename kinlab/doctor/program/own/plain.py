@@ -7,7 +7,7 @@ import enum
 import functools
 import inspect
 import itertools
-from collections.abc import Iterable, Iterator
+from collections.abc import Container, Iterable, Iterator
 from contextlib import suppress
 from types import (
     BuiltinFunctionType,
@@ -236,8 +236,15 @@ def attributes(value: Any) -> dict[str, Any]:
     return {**kept, **getattr(value, "__dict__", {})}
 
 
-def alike(one: Any, other: Any, depth: int = 6) -> bool:
-    """Whether what a line gives anew is what is there; of functions nothing is asked."""
+def alike(one: Any, other: Any, depth: int = 6, without: Container[str] = ()) -> bool:
+    """Whether what a line gives anew is what is there; of functions nothing is asked.
+
+    Args:
+        one: what is given anew.
+        other: what is there.
+        depth: of what is in one another.
+        without: attributes that are set later, of which nothing is asked.
+    """
     if depth == 0 or callable(one):
         return callable(one) == callable(other)
     if isinstance(one, int | float | complex | np.ndarray | np.number):
@@ -250,17 +257,21 @@ def alike(one: Any, other: Any, depth: int = 6) -> bool:
         return bool(close) and np.shape(one) == np.shape(other)
     if isinstance(one, list | tuple):
         same = isinstance(other, list | tuple) and len(one) == len(other)
-        return same and all(alike(a, b, depth - 1) for a, b in zip(one, other, strict=True))
+        pairs = zip(one, other, strict=True) if same else ()
+        return same and all(alike(a, b, depth - 1, without) for a, b in pairs)
     if not isinstance(one, dict):
         if type(one).__name__ != type(other).__name__:
             return False
         if not attributes(one):
             plain = getattr(type(one), "__eq__", None) is object.__eq__
             return plain or bool(one == other)
-        one, other = attributes(one), attributes(other)
+        one, other = (
+            {name: x for name, x in attributes(of).items() if name not in without}
+            for of in (one, other)
+        )
     if not isinstance(other, dict) or one.keys() != other.keys():
         return False
-    return all(alike(value, other[key], depth - 1) for key, value in one.items())
+    return all(alike(value, other[key], depth - 1, without) for key, value in one.items())
 
 
 def owners_in(value: Any, modules: frozenset[str | None], depth: int = _DEEP) -> Iterator[type]:

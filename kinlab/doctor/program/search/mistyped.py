@@ -38,7 +38,7 @@ def mistyped(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
     home = _home(robot)
     known = [*own_numbers(robot).tolist(), *home]
     for edit in of_table(trial, observed, robot):
-        if edit.kind == "entries swapped" or (edit.numbers and is_slip(*edit.numbers)):
+        if edit.kind == "entries swapped" or (edit.numbers and _is_sure(robot, *edit.numbers)):
             yield edit
     yield from of_other_rows(trial, observed, robot)
     for place in numbers(trial, observed):
@@ -47,6 +47,16 @@ def mistyped(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
             meant = {x for x in known if x * value > 0 and is_slip(value, x)}
             if len(meant) == 1 and max(map(len, map(_digits, (value, *meant)))) >= _DIGITS:
                 yield place.edit(meant.pop(), "number", _COST)
+
+
+def _is_sure(robot: Any, typed: float, meant: float) -> bool:
+    """Whether a number of a column is wrong whatever else is: a slip, or a length for its half.
+
+    One of the other sign is not, if another row has it so: whose row it is may be told wrongly.
+    """
+    if typed == -meant and is_own(robot, typed):
+        return False
+    return is_slip(typed, meant) or typed == 2 * meant
 
 
 def _home(robot: Any) -> set[float]:

@@ -15,8 +15,9 @@ from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import called, nodes
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.numbers.data import NumberPlace, leaves, shown, together
+from kinlab.doctor.program.edits.scope.functions import pi_of
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import DATA, ProgramEdit, number, places
+from kinlab.doctor.program.places import DATA, ProgramEdit, is_nothing, number, places
 from kinlab.doctor.program.trial import FieldChange, Trial
 from kinlab.fivebar import FiveBar
 from kinlab.model.dh import DHTable
@@ -36,8 +37,9 @@ _TOGETHER = 0.01
 """What several numbers of a row cost more than one, which may do alone."""
 _PLAIN = ("a", "alpha", "d", "theta", "mass", "armature")
 """What the arm's table has one number of for each link."""
-_END, _DECIMALS = 1.0, 15
-"""Cost of the arm's base or tool for the identity; decimals that its numbers have."""
+_END, _ABOUT, _DECIMALS = 1.0, 1.04, 15
+"""Cost of the arm's base or tool for the identity, and of the angle by which the base is turned for
+nought; decimals that its numbers have."""
 _DECIMALS_OF_DEGREES = 9
 """Decimals that angles in degrees are typed with at most."""
 _OF_AXES = 9
@@ -154,6 +156,11 @@ def _base_set(trial: Trial, observed: Observed, table: DHTable) -> Iterator[Prog
             if named and observed.shape(here.node) == (4, 4):
                 product = ast.BinOp(_written(base), ast.MatMult(), here.node)
                 yield here.instead(product, "missing matrix", _END)
+    turned = float(np.arccos(np.clip((np.trace(base[:3, :3]) - 1) / 2, -1, 1)))
+    pi = pi_of(trial.space) if turned == np.pi else None
+    for here in (one for part, tree in enumerate(trial.trees) for one in places(part, tree)):
+        if turned and isinstance(here.parent, ast.Call) and is_nothing(here.node):
+            yield here.instead(number(turned) if pi is None else pi, "number", _ABOUT)
     ends = {4: base, 3: base[:3, :3]}
     for here in (one for part, tree in enumerate(trial.trees) for one in places(part, tree)):
         seen = observed.of(here.node) if isinstance(here.node, ast.Call) else None

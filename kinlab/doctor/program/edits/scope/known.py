@@ -82,6 +82,7 @@ class Knowledge:
         self._members = members.members_of(trial, observed)
         self.attributes, self.keys = self._members.attributes, self._members.keys
         self.idle_keys = {*self.keys} - self._members.asked
+        self.idle_attributes = {*self.attributes} - members.read_attributes(trial)
         self.shapes |= of_names.given(trial, part, observed)
         self._read_expressions(trial, tree, gathered)
         self._tell_names(tree)
@@ -187,6 +188,8 @@ class Knowledge:
             known.setdefault(text_of(other), other)
         for other in self._members.beside(node, seen.shape, self.counters):
             known.setdefault(text_of(other), other)
+        for shape, other in self._members.unread_beside(node, self.idle_keys, self.idle_attributes):
+            pieces.put(self.pieces, shape, other)
         own = known[text] = known.get(text) or copied(node)
         bare = without_numbers(node) if seen.shape == () else None
         if bare is not None:
@@ -233,7 +236,6 @@ class Knowledge:
         known = (*self.shapes, *self.lists)
         self.unused = idle.unused_names(trial, trial.trees[part], self._local, known)
         self.idle_entries = set[str]() if part else idle.idle_entries(trial, self.shapes)
-        self.idle_attributes = {*self.attributes} - members.read_attributes(trial)
 
     def _put(self, shape: Shape, piece: ast.expr) -> None:
         pieces.put(self.pieces, shape, piece)

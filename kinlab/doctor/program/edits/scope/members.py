@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -82,6 +82,17 @@ class Members:
                 for name, own in self.keys.items():
                     if own == shape and (name != key.value or one is not node.value):
                         yield entry(copied(one), ast.Constant(name))
+
+    def unread_beside(
+        self, node: ast.expr, keys: Iterable[str], attributes: Iterable[str]
+    ) -> Iterator[Sized]:
+        """What nothing asks for of an object or a dictionary that is asked for something else."""
+        if isinstance(node, ast.Attribute) and node.attr in self.attributes:
+            for name in sorted(attributes):
+                yield self.attributes[name], member(copied(node.value), name)
+        elif isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Constant):
+            for name in sorted(keys) if node.slice.value in self.keys else ():
+                yield self.keys[name], entry(copied(node.value), ast.Constant(name))
 
 
 def _entries(node: ast.AST) -> Iterator[tuple[str, ast.expr]]:

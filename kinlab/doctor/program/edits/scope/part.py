@@ -69,6 +69,8 @@ class Scope(Knowledge):
     def is_idle(self, node: ast.AST) -> bool:
         """Whether it is what is set and used nowhere, or an entry of that."""
         while isinstance(node, ast.Subscript):
+            if getattr(node.slice, "value", None) in self.idle_keys:
+                return True
             node = node.value
         if isinstance(node, ast.Attribute):
             return node.attr in self.idle_attributes
@@ -87,7 +89,7 @@ class Scope(Knowledge):
         """What a piece costs more than one that is used nowhere."""
         if isinstance(node, ast.Name):
             return 0.0 if node.id in self.unused else _UNUSED / 2
-        if self.idle_attributes and self.is_idle(node):
+        if (self.idle_attributes or self.idle_keys) and self.is_idle(node):
             return 0.0
         return 0.0 if self.uses_idle(node) else _UNUSED
 

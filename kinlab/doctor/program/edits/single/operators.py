@@ -70,6 +70,8 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
                 yield here.instead(new, "names exchanged", _SIDES)
         for new in chains.crosswise(node):
             yield here.instead(new, "names exchanged", 1.13)
+        for new in chains.crossed(node):
+            yield here.instead(new, "cross product", 1.13)
         for new in chains.called_once(node):
             yield here.instead(new, "parentheses", 1.14)
         for side, inner in (("left", left), ("right", right)):
