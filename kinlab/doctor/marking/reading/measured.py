@@ -105,9 +105,13 @@ def _powers(formula: tree.Node, at: dict[str, float], sizes: dict[str, Size | No
         return None
     found: list[int] = []
     for k in range(3):
-        larger = {name: x * 2.0 ** sizes[name][k] for name, x in at.items()}  # type: ignore[index]
+        both = {
+            name: x * np.array([1.0, 2.0 ** (sizes[name] or (0, 0, 0))[k]])
+            for name, x in at.items()
+        }
         with np.errstate(all="ignore"):
-            ratio = float(tree.evaluate(formula, larger)) / float(tree.evaluate(formula, at))
+            before, after = np.broadcast_to(tree.evaluate(formula, both), (2,))
+            ratio = float(after / before)
         power = np.log2(ratio) if ratio > 0 else np.nan
         if not abs(power - round(power) if np.isfinite(power) else 1.0) < 1e-9:
             return None

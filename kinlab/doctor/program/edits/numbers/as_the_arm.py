@@ -15,7 +15,6 @@ from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import called, nodes
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.numbers.data import NumberPlace, leaves, shown, together
-from kinlab.doctor.program.edits.scope.functions import pi_of
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit, is_nothing, number, places
 from kinlab.doctor.program.trial import FieldChange, Trial
@@ -35,6 +34,7 @@ _APART = 2
 """Numbers other than nought of a column that is right but for one."""
 _TOGETHER = 0.01
 """What several numbers of a row cost more than one, which may do alone."""
+_PI = ast.Attribute(ast.Name("np", ast.Load()), "pi", ast.Load())
 _PLAIN = ("a", "alpha", "d", "theta", "mass", "armature")
 """What the arm's table has one number of for each link."""
 _END, _ABOUT, _DECIMALS = 1.0, 1.04, 15
@@ -157,10 +157,10 @@ def _base_set(trial: Trial, observed: Observed, table: DHTable) -> Iterator[Prog
                 product = ast.BinOp(_written(base), ast.MatMult(), here.node)
                 yield here.instead(product, "missing matrix", _END)
     turned = float(np.arccos(np.clip((np.trace(base[:3, :3]) - 1) / 2, -1, 1)))
-    pi = pi_of(trial.space) if turned == np.pi else None
+    angle = _PI if turned == np.pi and "np" in trial.space else number(turned)
     for here in (one for part, tree in enumerate(trial.trees) for one in places(part, tree)):
         if turned and isinstance(here.parent, ast.Call) and is_nothing(here.node):
-            yield here.instead(number(turned) if pi is None else pi, "number", _ABOUT)
+            yield here.instead(angle, "number", _ABOUT)
     ends = {4: base, 3: base[:3, :3]}
     for here in (one for part, tree in enumerate(trial.trees) for one in places(part, tree)):
         seen = observed.of(here.node) if isinstance(here.node, ast.Call) else None
