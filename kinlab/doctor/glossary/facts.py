@@ -17,7 +17,7 @@ from kinlab.doctor.changes import Mechanism, table_of
 from kinlab.fivebar import FiveBar
 from kinlab.formulas.handed.clauses import Claim, Holds
 from kinlab.model.dh import DHTable
-from kinlab.model.link import Convention
+from kinlab.model.link import FRICTION, Convention
 from kinlab.symbolic.vocabulary import is_planar, vocabulary
 from kinlab.tolerances import TOLERANCES
 
@@ -258,6 +258,10 @@ class _Facts:
     def third_slides(self, claim: Claim) -> bool | None:
         """Of a joint by its number alone."""
         return self.slide(claim) if claim.refs and not claim.names else None
+
+    def no_friction(self, _claim: Claim) -> bool:
+        """Whether no joint has any."""
+        return not any(getattr(link, name) for link in self.table.links for name in FRICTION)
 
     def rotor(self, claim: Claim) -> bool | None:
         own = vocabulary(self.table).values

@@ -70,6 +70,8 @@ _STEPPING = 4
 """And the part for the search beside the likeliest first edit."""
 _DEEPEST = 2
 """Edits beside which one more is looked for, and no two."""
+_FAR = 1.12
+"""Cost of an edit that is far-fetched."""
 _ODD = 2
 """Numbers that are off beside the arm's of which each is mended first."""
 _POSE = (4, 4)
@@ -155,9 +157,14 @@ class _Several:
         one_by_one = in_order.found()
         found = [] if one_by_one is None else self._fewer(search, [one_by_one])
         found = found or self._last(search, in_order.reached[:_WAYS])
+        together: TriedTogether | None = None
+        if found and _is_far(found[0], search.stand):
+            together = TriedTogether(search, known)
+            pairs = (tried.likeliest(known, some) for some in together.pairs())
+            found = next(filter(None, pairs), found)
         if found:
             return self.settled(search, found)
-        together = TriedTogether(search, known)
+        together = together or TriedTogether(search, known)
         most = 0 if search.stand else _IN_STAGES
         stages = InStages(search, known, together, in_order.reached, most)
         found = tried.of_ways(stages.ways(two=False))
@@ -312,6 +319,12 @@ class _Several:
                 if here.likely(one.edits[-1]) < cost + (_GAINED if more > 0 else _LOST) * more:
                     return self.settled(search, better[k:], turns + 1)
         return found
+
+
+def _is_far(repair: ProgramRepair, stand: Way) -> bool:
+    """Whether it is of three edits or more, one of them far-fetched: two others may do as well."""
+    own = repair.edits[len(stand) :]
+    return len(own) > _DEEPEST and max(edit.cost for edit in own) >= _FAR
 
 
 def _beside(search: LineSearch, edits: Way, thorough: bool = False) -> LineSearch:
