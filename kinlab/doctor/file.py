@@ -467,7 +467,7 @@ def _answers(
         if label not in labels:
             raise refused(
                 f"{file.path}: {titles[label]}",
-                N_("there is no entry {entry}; {plain} is {shape}"),
+                N_("entry {entry} does not exist; {plain} is {shape}"),
                 entry=_counted(label),
                 plain=plain,
                 shape=" x ".join(map(str, shape)) or "1",

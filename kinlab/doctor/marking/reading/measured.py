@@ -20,6 +20,7 @@ from kinlab.formulas.files import formula_file
 from kinlab.formulas.handed.units import Size, measured, size_of_name
 from kinlab.formulas.text import canonical
 from kinlab.host.language import _
+from kinlab.tolerances import TOLERANCES
 
 _WORD = re.compile(r"[A-Za-z]\w*")
 _TYPESET = re.compile(r"\$|\\[,;: ]|~|\\(?:mathrm|text|textrm|rm|si|unit)(?![A-Za-z])|[{}\[\]()]")
@@ -113,7 +114,7 @@ def _powers(formula: tree.Node, at: dict[str, float], sizes: dict[str, Size | No
             before, after = np.broadcast_to(tree.evaluate(formula, both), (2,))
             ratio = float(after / before)
         power = np.log2(ratio) if ratio > 0 else np.nan
-        if not abs(power - round(power) if np.isfinite(power) else 1.0) < 1e-9:
+        if not np.isfinite(power) or abs(power - round(power)) > TOLERANCES.same_number:
             return None
         found.append(round(power))
     return found[0], found[1], found[2]

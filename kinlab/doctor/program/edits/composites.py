@@ -33,7 +33,7 @@ _BESIDE = 1.06
 """Cost of what the same statement has the parts of."""
 _OF_SUMMANDS = 1.08
 """Cost of the cross product of a rate that is turned and of what is added to it elsewhere."""
-_LAST = 0.005
+_LAST = 0.01
 """What a factor of the last matrix of a product costs more."""
 _FEW = 8
 """Angular velocities that are tried; twice as many arms."""
