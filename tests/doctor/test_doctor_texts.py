@@ -354,3 +354,9 @@ def test_a_formula_is_not_written_anew():
     found = kl.diagnose("spatial3r", "jacobian_determinant", wrong)
     assert not found.agrees
     assert not any("is missing" in cause.sentence for cause in found.causes), found
+
+
+def test_a_share_in_brackets_that_lost_its_square():
+    found = kl.diagnose("single_link", "kinetic_energy", "1/2*(I1 + m1*(l1/2))*qd1^2")
+    (cause,) = found.causes
+    assert cause.kinds == ("power",) and "(l1/2)^2" in cause.sentence, found

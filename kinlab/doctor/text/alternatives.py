@@ -488,7 +488,9 @@ def _as_factor(line: Line, place: Place) -> None:
     piece = line.segment(place)
     whole = is_sum(node)
     wrapped = f"({piece})" if isinstance(node, (ast.BinOp, ast.UnaryOp)) else piece
-    if (isinstance(node, (ast.Name, ast.Call)) or whole) and not _is_base(place):
+    share = isinstance(node, ast.BinOp) and not whole and _in_brackets(line, place)
+    share = share and bool(words_in(piece)) and piece[:1] != "("  # (l1/2), and no \\frac
+    if (isinstance(node, (ast.Name, ast.Call)) or whole or share) and not _is_base(place):
         cost = 1.4 if whole else 1.1
         closed = re.match(r"\s*\)", line.source[place.span[1] :])
         outside = _outer_start(line, place) < place.span[0] and closed is not None
