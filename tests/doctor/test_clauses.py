@@ -218,8 +218,18 @@ def test_a_letter_below_a_matrix_is_no_word() -> None:
         "Reibung vernachlässigt",
     ],
 )
-def test_an_arm_without_friction_has_none_neglected(words):
+def test_an_arm_without_friction_has_none_neglected(words) -> None:
     formula = "tau2 = m2*l2^2*(qdd1+qdd2) + m2*l1*l2*c2*qdd1 + m2*l1*l2*s2*qd1^2 + m2*g*l2*c12"
     text = f"{words} {formula}" if words.endswith(":") else f"{formula}, {words}"
     found = kl.diagnose("planar2r", "tau2", text)
     assert found.agrees and not found.remarks, found
+
+
+@pytest.mark.parametrize("words", ["不忽略摩擦", "friction is not neglected", "with friction"])
+def test_friction_that_is_not_neglected_is_never_passed_over(words) -> None:
+    try:
+        found = kl.diagnose("planar2r", "g2", f"g2 = m2*g*l2*c12, {words}")
+    except ExpressionError as problem:
+        assert "friction" in str(problem)
+    else:
+        assert found.remarks, found
