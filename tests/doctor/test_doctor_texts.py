@@ -360,3 +360,24 @@ def test_a_share_in_brackets_that_lost_its_square():
     found = kl.diagnose("single_link", "kinetic_energy", "1/2*(I1 + m1*(l1/2))*qd1^2")
     (cause,) = found.causes
     assert cause.kinds == ("power",) and "(l1/2)^2" in cause.sentence, found
+
+
+@pytest.mark.parametrize(
+    "where",
+    [r"where $c_{123}$ stands for $\cos\theta_3$", r"where $c_{123}$ denotes $\cos\theta_3$"],
+)
+def test_what_a_name_stands_for_is_a_definition(where):
+    text = rf"x = l_1c_1 + l_2c_{{12}} + l_3c_{{123}}, {where}"
+    found = kl.diagnose("planar3r", "x", text)
+    (cause,) = found.causes
+    assert cause.sentence.startswith("c123: "), found
+    right = text.replace(r"\cos\theta_3", r"\cos(\theta_1+\theta_2+\theta_3)")
+    assert kl.diagnose("planar3r", "x", right).agrees
+
+
+def test_of_numbers_in_a_constant_none_is_called_wrong_by_its_value_alone():
+    """Any of them could be the wrong one."""
+    text = "2.5*0.5^2 + 1.5*0.4 + 2*1.5*0.5*0.4*cos(q2)"  # 3.5*0.5^2 + 1.5*0.4^2 + ...
+    found = kl.diagnose("planar2r", "M11", text)
+    assert not found.agrees
+    assert not any("2.06" in cause.sentence for cause in found.causes), found

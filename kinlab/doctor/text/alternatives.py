@@ -213,6 +213,8 @@ def _number(line: Line, place: Place) -> None:
         sure = means or (decimal and len(alike(line, line.segment(place))) < 2)
         if _beside_names(line, place):  # what is wrong with them comes to a number too
             sure = line.meanings.parameter(right) is not None
+        if _among_numbers(place):  # any of these, or of the constant's, may be the wrong one
+            sure = means
         sure = sure and math.isfinite(right)
         if sure and not shown.startswith("-") and not (idle and shown == "1"):
             own = line.meanings.parameter(right) is not None
@@ -248,6 +250,16 @@ def _angle(line: Line, place: Place) -> None:
     if 0 < abs(exact - float(digits)) <= _NEAR_ANGLE * exact:
         shown = line.meanings.named(exact)
         line.instead(place, shown, np.full(line.count, exact), "coefficient", 1.15)
+
+
+def _among_numbers(place: Place) -> bool:
+    """Whether a number stands in a product of nothing but numbers."""
+    top = place
+    while top.above is not None and not is_sum(top.above.node):
+        top = top.above
+    inside = [*ast.walk(top.node)]
+    names = any(isinstance(one, ast.Name) for one in inside)
+    return top is not place and not names
 
 
 def _beside_names(line: Line, place: Place) -> bool:

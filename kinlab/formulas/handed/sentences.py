@@ -23,10 +23,10 @@ _DOTTED = re.compile(
     r"\b(?:i\.\s?e|e\.\s?g|d\.\s?h|z\.\s?b|q\.\s?e\.\s?d|bzw|w\.\s?r\.\s?t|resp|ans|eqn?|no|nr|sol|fig|vgl|abb|gl|cf|sec|ch|tab)\.(?=\s|,|$|:)",
     re.IGNORECASE,
 )
-_DENOTES = re.compile(
-    r"([\\\w{}]{1,15})\s+(?:denotes|means|stands for|is short for|steht für|表示)\s+"
-    r"(?=[^,;.=]{0,60}[-+*/(^])"
-)
+_MEANS = r"\s+(?:denotes|means|stands for|is short for|steht für|表示)\s+"
+_WORKED_OUT = r"(?=[^,;.=$]{0,60}(?:[-+*/(^]|\\?(?:cos|sin|tan)(?![a-z])))"
+_DENOTES = re.compile(rf"([\\\w{{}}]{{1,15}}){_MEANS}{_WORKED_OUT}")
+_DENOTES_IN_MATHS = re.compile(rf"(\$[^$=]{{1,15}})\${_MEANS}\${_WORKED_OUT}")
 _AND = re.compile(r"and|und|plus|minus|times|twice")
 _OPEN_END = re.compile(r"[\w)}\]²³₀-₉']$")
 _LETTERS = re.compile(
@@ -81,7 +81,8 @@ def without_sentences(text: str, entry: str) -> str:
     """
     if _PROGRAM.search(text) or len(_WORD.findall(text)) > _MOST:
         return text
-    text = _COMMENT.sub("", _DENOTES.sub(r"\1 = ", text))
+    text = _DENOTES.sub(r"\1 = ", _DENOTES_IN_MATHS.sub(r"\1 = ", text))
+    text = _COMMENT.sub("", text)
     opened = _FONT.sub(lambda found: _opened(found, text), text)
     marked = _marked(opened)
     if _GAP not in marked and MATHS.search(opened) and "=" in MATHS.sub(" ", opened):
