@@ -54,7 +54,7 @@ def test_the_words_of_one_are_told_to_no_other(turned):
         ("b", "23.05 Nm (rounded)"), ("b", "23.05 newton metres"), ("b", "23.05 J"), ("b", "23.0535 [Nm]"),
         ("b", r"$23.05\,\mathrm{N\,m}$"), ("b", "tau_{1,max} = 23.05 Nm"), ("b", "23.0535"),
         ("c", "90°"), ("c", "90 degrees"), ("c", "π/2 rad"), ("c", "1.57 rad"), ("c", "pi/2"),
-        ("d", "0.9 m"), ("d", "90 cm"), ("d", "l1 + l2 = 0.9 m"), ("e", "k*l1"),
+        ("b", "23.0535 kg*m**2/s**2"), ("b", "23.0535 kg m^2/s^2"), ("d", "0.9 m"), ("d", "90 cm"), ("d", "l1 + l2 = 0.9 m"), ("e", "k*l1"),
     ],
 )  # fmt: skip
 def test_a_number_in_its_unit_is_right(question, answer):
@@ -176,3 +176,24 @@ def test_an_entry_that_is_not_there_is_counted_from_one():
     }
     found = kl.mark(sheet, {"ada": {"j": {"J13": "l1"}}})["ada"]["j"]
     assert "(1, 3)" in found.remark and "3 x 2" in found.remark, found
+
+
+def test_a_name_of_the_sheets_own_is_no_coordinate(tmp_path):
+    questions = [
+        {"id": "a", "entry": "x"},
+        {"id": "b", "text": "t", "entry": "x_e", "answer": "l1"},
+    ]
+    sheet = {"title": "t", "robot": "planar2r", "questions": questions}
+    (tmp_path / "ada.txt").write_text(f"student: ada\nx_e = l1\nx_tool = {X}\n")
+    marks = kl.mark(sheet, tmp_path, workers=1)["ada"]
+    assert marks["a"].right and marks["b"].right, marks
+
+
+@pytest.mark.parametrize("model", ["(m1 + m2)*9.81*l1 + m2*9.81*l2", "23.0535", "10*2.30535*m1/2"])
+def test_where_a_number_may_have_a_unit_none_is_refused(model):
+    sheet = {
+        "title": "t",
+        "robot": "planar2r",
+        "questions": [{"id": "b", "text": "t", "answer": model}],
+    }
+    assert kl.mark(sheet, {"ada": {"b": "23.0535 N m"}})["ada"]["b"].right

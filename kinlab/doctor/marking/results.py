@@ -44,8 +44,8 @@ def withdraw(folder: Path, here: Container[str]) -> int:
     gone = [one for one in (folder / RECORDS).glob("*.json") if one.stem not in here]
     try:
         for record in gone:
-            for path in (folder / "students", ".html"), (folder / "results", ".json"):
-                (path[0] / f"{record.stem}{path[1]}").unlink(missing_ok=True)
+            (folder / "students" / f"{record.stem}.html").unlink(missing_ok=True)
+            (folder / "results" / record.name).unlink(missing_ok=True)
             record.unlink()
     except OSError as problem:
         raise FileError(f"{folder}: cannot be written ({problem.strerror})") from None

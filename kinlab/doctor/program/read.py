@@ -38,6 +38,8 @@ _MOST = 40
 """Functions of one program that are read."""
 _LOADED = "module"
 """What the lines outside all functions are called."""
+MAKING = ("__new__", "__init__", "__post_init__")
+"""Methods that run when an object is made."""
 _GENERATED = "__create_fn__"
 """In which a dataclass makes its methods."""
 
@@ -223,7 +225,7 @@ def _all_read(program: OwnProgram) -> bool:
         fields = getattr(owner, "__dataclass_fields__", {}).values()
         if any(isinstance(one.default_factory, FunctionType) for one in fields):
             return False
-        for name in ("__new__", "__init__", "__post_init__"):
+        for name in MAKING:
             kept = vars(owner).get(name)
             method = getattr(kept, "__func__", kept)
             written_ = isinstance(method, FunctionType) and not generated(method)

@@ -38,7 +38,7 @@ from kinlab.doctor.program.own.plain import (
     made_like,
     written,
 )
-from kinlab.doctor.program.read import OwnProgram, implied
+from kinlab.doctor.program.read import MAKING, OwnProgram, implied
 
 
 class NoProgramError(Exception):
@@ -49,8 +49,6 @@ class FailedError(Exception):
     """A program ended with an error of its own."""
 
 
-_MAKING = ("__init__", "__post_init__", "__new__")
-"""Methods that run when an object is made."""
 _DEEPEST = 2
 """Lists in lists of which it is told whether they are the same."""
 _REMEMBERED = 20_000
@@ -178,7 +176,7 @@ class Trial:
     def _set_later(self) -> set[str]:
         """The attributes that objects are given when the function is asked, and not when made."""
         asked = zip(self.program.parts, self.trees, strict=True)
-        inner = (x for part, tree in asked if part.name not in _MAKING and not part.sets
+        inner = (x for part, tree in asked if part.name not in MAKING and not part.sets
                  for x in nodes(tree))  # fmt: skip
         return {
             x.attr for x in inner if isinstance(x, ast.Attribute) and isinstance(x.ctx, ast.Store)

@@ -254,19 +254,20 @@ def _angle(line: Line, place: Place) -> None:
 
 def _among_numbers(place: Place) -> bool:
     """Whether a number stands in a product of nothing but numbers."""
-    top = place
-    while top.above is not None and not is_sum(top.above.node):
-        top = top.above
-    inside = [*ast.walk(top.node)]
-    names = any(isinstance(one, ast.Name) for one in inside)
-    return top is not place and not names
+    term = _term_of(place)
+    return term is not place and not any(isinstance(x, ast.Name) for x in ast.walk(term.node))
+
+
+def _term_of(place: Place) -> Place:
+    """The term of a sum, or the whole, that a place stands in."""
+    while place.above is not None and not is_sum(place.above.node):
+        place = place.above
+    return place
 
 
 def _beside_names(line: Line, place: Place) -> bool:
     """Whether the robot's numbers stand by their names in the term of a number."""
-    while place.above is not None and not is_sum(place.above.node):
-        place = place.above
-    words = words_in(line.segment(place))
+    words = words_in(line.segment(_term_of(place)))
     return any(not tree.names(line.meaning(w)).isdisjoint(line.names.parameters) for w in words)
 
 

@@ -150,7 +150,7 @@ def measured(unit: str) -> tuple[Size | None, str]:
 
     Of what is no unit the size is None.
     """
-    plain = unit
+    plain = unit.replace("**", "^")
     for pattern, short in _WRITTEN_OUT:
         plain = pattern.sub(short, plain)
     plain = plain.replace("%", "?").strip(" .")

@@ -7,7 +7,6 @@ heavy and every second twice as long the model's answer is some power of two as 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
 from functools import lru_cache
 
 import numpy as np
@@ -27,15 +26,14 @@ _TYPESET = re.compile(r"\$|\\[,;: ]|~|\\(?:mathrm|text|textrm|rm|si|unit)(?![A-Z
 _MEASURED = re.compile(
     r"\s*(?P<left>[\\A-Za-z][^=]{0,24}=\s*)?(?:about|approx(?:imately|\.)?|roughly|circa|ca\.?|etwa"
     r"|rund|≈|~|约|大约)?\s*(?P<number>[-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?|(?:pi|π)(?:\s?/\s?\d+)?)"
-    r"\s*(?P<unit>[^\d\s=+,;][^\d=+,;]{0,24}?(?:\^?-?\d|[²³])?)?\s*"
+    r"\s*(?P<unit>[^\d\s=+,;](?:[^\d=+,;]|(?<=[\^*A-Za-z-])\d){0,24}?)?\s*"
     r"(?:,?\s*(?:rounded|approx\.?|gerundet|约))?\s*[.。]?\s*",
     re.IGNORECASE,
 )
-_RATES = (
-    (re.compile(r"(?:q|th|theta)dd\d?"), (0, 0, -2)),
-    (re.compile(r"(?:q|th|theta)d\d?"), (0, 0, -1)),
-)
+_JOINT = re.compile(r"(?:q|th|theta)(d{0,2})\d?")
 _HALF = 0.5
+_PLAIN = 8
+"""Up to which the parts of a fraction are a plain number's."""
 
 
 def without_unit(text: str, question: Question, sheet: Sheet) -> str:
@@ -53,7 +51,8 @@ def without_unit(text: str, question: Question, sheet: Sheet) -> str:
     found = _MEASURED.fullmatch(plain)
     if found is None or not found["unit"]:
         return text if found is None else _named(found, question) + _digits(found)
-    known = {*named_numbers(sheet.robot)}
+    numbers = named_numbers(sheet.robot)
+    known = {*numbers}
     for one in question.answer.values():
         known |= {*_WORD.findall(one)}
     unit = found["unit"].strip()
@@ -62,9 +61,7 @@ def without_unit(text: str, question: Question, sheet: Sheet) -> str:
     size, factor = measured(unit)
     if size is None:
         return text
-    asked = _size_of(
-        tuple(question.answer.items()), tuple(sorted(named_numbers(sheet.robot).items()))
-    )
+    asked = _size_of(tuple(question.answer.items()), tuple(sorted(numbers.items())))
     if asked is not None and size != asked:
         said = _("{unit!r} is no unit of what is asked for")
         raise ExpressionError(said.format(unit=unit))
@@ -95,10 +92,19 @@ def _size_of(
         formula = tree.renamed(formula, {name: canonical(name) for name in tree.names(formula)})
         names = tree.names(formula)
         sizes = {name: _of_name(name) for name in names}
-        if not names or file.symbols or not names <= {*words, *_joints(names)}:
+        known = all(name in words or _JOINT.fullmatch(name) for name in names)
+        plain = all(map(_is_plain, (part for _path, part in tree.nodes(formula))))
+        if not names or file.symbols or not known or not plain:
             return None
         return _powers(formula, {name: words.get(name, _HALF) for name in names}, sizes)
     return None
+
+
+def _is_plain(node: tree.Node) -> bool:
+    """Whether it is no number that may have a unit of its own, as the 9.81 of m1*9.81*l1."""
+    if node.op != "num":
+        return True
+    return bool(max(abs(node.value.numerator), node.value.denominator) <= _PLAIN)
 
 
 def _powers(formula: tree.Node, at: dict[str, float], sizes: dict[str, Size | None]) -> Size | None:
@@ -121,9 +127,5 @@ def _powers(formula: tree.Node, at: dict[str, float], sizes: dict[str, Size | No
 
 
 def _of_name(name: str) -> Size | None:
-    rate = next((size for pattern, size in _RATES if pattern.fullmatch(name)), None)
-    return rate or size_of_name(name)
-
-
-def _joints(names: Iterable[str]) -> set[str]:
-    return {x for x in names if re.fullmatch(r"(?:q|th|theta)d{0,2}\d?", x)}
+    joint = _JOINT.fullmatch(name)
+    return (0, 0, -len(joint[1])) if joint else size_of_name(name)

@@ -263,10 +263,16 @@ def _asked(left: str, sheet: Sheet, writing: Hand) -> tuple[Question | None, str
         return None, ""
     if not name:
         return None, ""
+    for one in dict.fromkeys((name, _coordinate(name))):  # a sheet may have an x_e of its own
+        for question in sheet.questions:
+            if one in (
+                question.entry,
+                question.id,
+                shown_entry(question.quantity),
+                *question.answer,
+            ):
+                return question, one
     name = _coordinate(name)
-    for question in sheet.questions:
-        if name in (question.entry, question.id, shown_entry(question.quantity), *question.answer):
-            return question, name
     try:
         plain, index = split_name(claimed_of(name, sheet.robot))
     except KinlabError:
@@ -311,7 +317,7 @@ def as_entries(question: Question, given: Mapping[str, str], sheet: Sheet) -> di
             named[default] = text
             continue
         said = claims(without_sentences(text, question.entry), name or default) or name
-        said = _coordinate(said)
+        said = said if said == question.entry else _coordinate(said)
         if said in ("", question.id, question.entry, default, shown, _head(question)):
             named[default] = text
             continue

@@ -158,11 +158,10 @@ def _base_set(trial: Trial, observed: Observed, table: DHTable) -> Iterator[Prog
                 yield here.instead(product, "missing matrix", _END)
     turned = float(np.arccos(np.clip((np.trace(base[:3, :3]) - 1) / 2, -1, 1)))
     angle = _PI if turned == np.pi and "np" in trial.space else number(turned)
+    ends = {4: base, 3: base[:3, :3]}
     for here in (one for part, tree in enumerate(trial.trees) for one in places(part, tree)):
         if turned and isinstance(here.parent, ast.Call) and is_nothing(here.node):
             yield here.instead(angle, "number", _ABOUT)
-    ends = {4: base, 3: base[:3, :3]}
-    for here in (one for part, tree in enumerate(trial.trees) for one in places(part, tree)):
         seen = observed.of(here.node) if isinstance(here.node, ast.Call) else None
         size = len(seen.values[0]) if seen is not None and seen.values and seen.shape else 0
         end = ends.get(size, np.eye(size))
