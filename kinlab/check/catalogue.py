@@ -43,7 +43,8 @@ class Row:
         corrected: the corrected form beside the engine.
         printed: the printed form beside the engine, where the note has a misprint that shows on
             this robot.
-        diagnosis: what is wrong in a user's formula that differs, where it was looked for.
+        diagnosis: what is wrong in a user's formula that differs, where it was looked for; or
+            that it is right all the same, written otherwise.
         failure: why the function gave no answer at all, or an empty string.
     """
 
@@ -60,17 +61,24 @@ class Row:
         return self.printed is None or self.printed.max_error > TOLERANCES.formula_differs
 
     @property
+    def right(self) -> bool:
+        """Whether the corrected form is the engine's, or another that is as right."""
+        return self.corrected.agrees or (self.diagnosis is not None and self.diagnosis.agrees)
+
+    @property
     def ok(self) -> bool:
-        """Whether the corrected form agrees and the printed one, if any, does not."""
-        return self.corrected.agrees and self.misprint_shown
+        """Whether the corrected form is right and the printed one, if any, does not agree."""
+        return self.right and self.misprint_shown
 
     @property
     def verdict(self) -> str:
         """One line: agrees, or what is wrong."""
         if self.failure:
             return _("FAILED: {reason}").format(reason=self.failure)
-        if not self.corrected.agrees:
+        if not self.right:
             return _("DIFFERS from the engine")
+        if not self.corrected.agrees and self.diagnosis is not None:
+            return _(self.diagnosis.verdict)
         if self.printed is None or self.formula.printed is None:
             return _("agrees")
         if not self.misprint_shown:

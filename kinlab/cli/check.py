@@ -319,7 +319,11 @@ def _print_table(done: Sequence[Row], each: bool) -> None:
 
 def _print_failures(console: Screen, done: Sequence[Row]) -> None:
     for row in done:
-        if not row.corrected.agrees:
+        if row.corrected.agrees:
+            continue
+        if row.right and row.diagnosis is not None:
+            console.print(f"\n{row.diagnosis}", highlight=False, soft_wrap=True)
+        else:
             told = row.verdict if row.failure else row.corrected
             console.print(f"\n{row.formula.key}: {told}", style="red")
             if row.diagnosis is not None:
@@ -354,6 +358,9 @@ def _print_closing(console: Screen, done: Sequence[Row], formulas: int) -> None:
     text = told.format(
         formulas=several(formulas, "formula"), rows=several(len(done), "row"), agree=agree
     )
+    otherwise = sum(row.right for row in done) - agree
+    if otherwise:
+        text += _(", {count} right but written otherwise").format(count=otherwise)
     if misprints:
         text += _(", {misprints} shown").format(misprints=several(misprints, "misprint"))
     if wrong:

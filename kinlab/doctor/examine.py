@@ -347,7 +347,9 @@ def _possible(
     if same and all(len(cause.kinds) > LIST for cause in causes):
         # beside a list of slips only the likeliest reading: each costs a search of its own
         likely = [r for r in tried if r.kind == "sign"] if causes else tried
-        causes += reading_and_slips(case, likely, engine)
+        more = reading_and_slips(case, likely, engine)
+        # of a program of which no line explains it a list of numbers says nothing
+        causes += [x for x in more if program is None or len(x.kinds) <= _SLIPS]
     return causes, partial, None, split
 
 

@@ -13,7 +13,7 @@ from kinlab.arrays import Array
 from kinlab.check.compare import relative_errors
 from kinlab.check.diagnosis import Cause
 from kinlab.doctor import rounding, verdicts
-from kinlab.doctor.changes import AnswerEntry, Arguments, Case, entries, table_of
+from kinlab.doctor.changes import ANGLES, AnswerEntry, Arguments, Case, entries, table_of
 from kinlab.doctor.confusions.centres import as_there, centres_elsewhere
 from kinlab.doctor.derivations.words import together
 from kinlab.doctor.derived import Derivation, derivation_of, searchable
@@ -21,12 +21,11 @@ from kinlab.doctor.entries.terms import Slip
 from kinlab.doctor.linkages.looked_up import Reference, reference_of
 from kinlab.doctor.slips import of_entry, slip_cause
 from kinlab.doctor.text.habits import NOTHING
-from kinlab.doctor.text.line import words_in
 from kinlab.doctor.text.stand_ins import bare_number, rounding_remarks, stand_ins
 from kinlab.doctor.text.written import Together, Written
 from kinlab.doctor.verdicts import Excuse
 from kinlab.errors import KinlabError, already_said
-from kinlab.formulas.text import canonical, parse
+from kinlab.formulas.text import canonical, parse, words_in
 from kinlab.formulas.tree import Node, evaluate, names, renamed
 from kinlab.host.language import _
 from kinlab.model.dh import DHTable
@@ -224,7 +223,8 @@ def covered_up(
         text = written.get(entry.label)
         if text is None:
             continue
-        kept, gap = verdicts.elsewhere(text, derived, poly, case.quantity.arguments)
+        turns = case.quantity.name in ANGLES
+        kept, gap = verdicts.elsewhere(text, derived, poly, case.quantity.arguments, turns)
         zero = (
             name for name in dict.fromkeys(words_in(text.text)) if text.symbols.get(name) == NOTHING
         )

@@ -24,7 +24,6 @@ from kinlab.doctor.shapes import in_full
 from kinlab.doctor.text.claims import alone, claimed_of, named_alone, with_forces, with_wrench
 from kinlab.doctor.text.habits import with_habits
 from kinlab.doctor.text.joints import joint_values
-from kinlab.doctor.text.line import words_in
 from kinlab.doctor.text.own_names import (
     DECIMAL,
     as_distances,
@@ -41,7 +40,7 @@ from kinlab.formulas import tree
 from kinlab.formulas.files import FormulaFile, formula_file
 from kinlab.formulas.lines import Lines, read_lines
 from kinlab.formulas.signs.refusals import refused
-from kinlab.formulas.text import canonical, parse
+from kinlab.formulas.text import canonical, parse, words_in
 from kinlab.formulas.tree import Node
 from kinlab.host.files import read_text
 from kinlab.host.language import N_, _

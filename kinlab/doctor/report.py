@@ -9,17 +9,17 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.arrays import seed_of, whole
+from kinlab.arrays import Array, seed_of, whole
 from kinlab.check.catalogue import Row
 from kinlab.check.compare import need_function
 from kinlab.check.diagnosis import ENTRY_LETTERS, Cause, Diagnosis, Typeset, shown_entry
 from kinlab.check.guest import GuestFunction
+from kinlab.check.quantities.identity import IDENTITY
 from kinlab.check.quantities.registry import quantities, split_name
 from kinlab.check.quantities.registry import quantity as find_quantity
-from kinlab.check.quantities.serial import SERIAL
 from kinlab.check.targets import PlannedRow
 from kinlab.check.unread import Unread
-from kinlab.doctor.changes import Mechanism, label_of
+from kinlab.doctor.changes import Case, Mechanism, label_of
 from kinlab.doctor.derived import derivation
 from kinlab.doctor.examine import examine, prepare, real
 from kinlab.doctor.file import (
@@ -101,7 +101,11 @@ def diagnose(
         lines=partial(lines, function),
     )
     hand = np.asarray(stacked(None, *case.arguments.values()))
-    name = function_name(function)
+    return _of_answers(case, hand, engine, quantity, function_name(function))
+
+
+def _of_answers(case: Case, hand: Array, engine: Array, quantity: str, name: str) -> Diagnosis:
+    """A function, judged by its answers; a five-bar's equation may be multiplied by a factor."""
     same = times(case, hand, engine) if isinstance(case.robot, FiveBar) else None
     if same is None:
         return examine(case, hand, engine, quantity, name, {})
@@ -245,15 +249,15 @@ def of_task(task: PlannedRow, samples: int = 200, seed: int = 0) -> Row | Diagno
     Raises:
         KinlabError: as :func:`kinlab.compare`.
     """
-    serial = find_quantity(task.record.quantity).domain is SERIAL
+    asked = find_quantity(task.record.quantity).domain is not IDENTITY
     try:
         row = task.run(samples, seed)
     except AnswerShapeError:
-        found = _of_function(task, samples, seed) if task.file and serial else None
+        found = _of_function(task, samples, seed) if task.file and asked else None
         if found is None or not found.known:
             raise
         return found
-    if row.corrected.agrees or row.failure or not task.file or not serial:
+    if row.corrected.agrees or row.failure or not task.file or not asked:
         return row
     return Row(
         row.formula, row.robot, row.corrected, row.printed, _of_function(task, samples, seed)
@@ -264,11 +268,11 @@ def _of_function(task: PlannedRow, samples: int, seed: int) -> Diagnosis:
     record = task.record
     plain, index = split_name(record.quantity)
     case, engine = prepare(task.robot, plain, index, max(samples, FEWEST), seed)
-    numbers = SERIAL.numbers(case.robot)
+    numbers = case.quantity.domain.numbers(case.robot)
     hand = record.function(numbers, *(np.array(s) for s in case.arguments.values()))
     if isinstance(record.function, GuestFunction):
         case = replace(case, lines=partial(lines_elsewhere, record.function.ask))
-    found = examine(case, hand, engine, record.quantity, record.id, {})
+    found = _of_answers(case, hand, engine, record.quantity, record.id)
     right = _corrected(found)
     corrected = tuple(equation(_name(label), parse(text)) for label, text in right.items())
     return replace(found, source=task.file, corrected=corrected)

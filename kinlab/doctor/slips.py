@@ -20,11 +20,11 @@ from kinlab.doctor.entries.definitions import Definitions
 from kinlab.doctor.entries.terms import Slip
 from kinlab.doctor.linkages.looked_up import Reference, reference_of
 from kinlab.doctor.text.habits import as_text
-from kinlab.doctor.text.line import Line, words_in
+from kinlab.doctor.text.line import Line
 from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import numbers_at
 from kinlab.errors import KinlabError
-from kinlab.formulas.text import canonical, parse
+from kinlab.formulas.text import canonical, parse, words_in
 from kinlab.host.language import _
 from kinlab.symbolic.vocabulary import vocabulary
 from kinlab.tolerances import TOLERANCES

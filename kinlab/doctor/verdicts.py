@@ -263,9 +263,15 @@ def numbers_at(case: Case) -> dict[str, Array]:
 
 
 def elsewhere(
-    text: Written, derived: Reference, poly: Any, arguments: tuple[str, ...]
+    text: Written, derived: Reference, poly: Any, arguments: tuple[str, ...], turns: bool = False
 ) -> tuple[list[str], float]:
     """How a text that agrees at the robot's own numbers does at other ones.
+
+    Args:
+        text: the formula.
+        derived, poly: what is right, and of it this entry.
+        arguments: what the quantity depends on.
+        turns: whether a whole turn more or less is the same.
 
     Returns:
         The names whose numbers it has in place of them, or that it must have with others; and
@@ -279,7 +285,8 @@ def elsewhere(
     at = as_rods(derived.anywhere(10), text, derived)
 
     def whole(at: Mapping[str, Array]) -> Array:
-        return np.asarray(tree.evaluate(right, dict(at)))
+        found = np.asarray(tree.evaluate(right, dict(at)))
+        return less_turns(found, text.values(at)) if turns else found
 
     gap = _gap(text, at, whole(at))
     if gap <= TOLERANCES.formula_agrees:

@@ -32,6 +32,8 @@ _JOINT = tuple(
     for heads, letter in (("theta|th|q", "q"), (_DOTTED, "qd"), (_TWICE_DOTTED, "qdd"))
 )
 _DOTTED_BEHIND = re.compile(r"(?:theta|th|q)_?([1-9]\d?)_?(d{1,2})(?:ot)?")
+WORD = re.compile(r"(?<![\w.])[A-Za-z_]\w*")
+"""A name in a formula; the e of ``1e-4`` is none."""
 _ABSOLUTE = re.compile(r"(?:theta|th)(d{0,2})_?((?=[1-9]{2})1?2?3?4?5?6?7?8?9?)")
 """theta12 is q1 + q2, as c12 is its cosine: joints in ascending order."""
 _UNDERSCORED = re.compile(r"[A-Za-z]+(?:_[A-Za-z]+)?_?[0-9]+")
@@ -83,6 +85,11 @@ def _remedy(text: str) -> str:
     if re.search(r"[\w)] +[\w(]", text):
         return _("; ") + _("write * between factors")
     return ""
+
+
+def words_in(text: str) -> list[str]:
+    """The names in a formula, in their order; of functions, too."""
+    return WORD.findall(text)
 
 
 def tidied(text: str) -> str:

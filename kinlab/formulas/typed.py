@@ -823,7 +823,7 @@ _IN_BOOKS = (
     "p momentum",
     "qdd ddq forward_dynamics",
     "q th theta inverse_kinematics inverse_kinematics_xy inverse_kinematics_xyphi "
-    "inverse_kinematics_xyz inverse_kinematics_xyzphi",
+    "inverse_kinematics_xyz inverse_kinematics_xyzphi fivebar_angles",
 )
 """What books call the same thing: Spong's d11 and phi1, Craig's V, Siciliano's B."""
 _MEANT = tuple({word.lower() for word in group.split()} for group in _IN_BOOKS)

@@ -107,7 +107,7 @@ def reached(robot: Robot, task: Task, solutions: Any) -> Array:
 
 
 def as_solutions(robot: Robot, answers: Any) -> Array:
-    """A hand formula's answers as (N, m, n), from one solution (N, n) or several.
+    """A hand formula's answers as (N, m, n), m >= 1, from one solution (N, n) or several.
 
     Raises:
         AnswerShapeError: answers of another shape.
@@ -117,6 +117,8 @@ def as_solutions(robot: Robot, answers: Any) -> Array:
         values = values[:, None]
     if values.ndim != 3 or values.shape[2] != robot.n:
         raise AnswerShapeError(_shape_told(robot, np.shape(answers)[1:]))
+    if not values.shape[1]:  # no row at any target: one that is no solution
+        return np.full((len(values), 1, robot.n), np.nan)
     return values
 
 

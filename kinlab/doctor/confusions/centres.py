@@ -17,11 +17,10 @@ import numpy as np
 from kinlab.doctor.changes import AnswerEntry, Case, table_of
 from kinlab.doctor.derived import Derivation, derivation
 from kinlab.doctor.text.habits import as_text, in_books
-from kinlab.doctor.text.line import words_in
 from kinlab.doctor.text.written import Written
 from kinlab.errors import KinlabError, already_said
 from kinlab.formulas import tree
-from kinlab.formulas.text import canonical, parse
+from kinlab.formulas.text import canonical, parse, words_in
 from kinlab.formulas.tree import Node
 from kinlab.model.dh import DHTable
 from kinlab.symbolic.trig import Poly

@@ -16,12 +16,12 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.doctor.entries.terms import Slip, slip_of
 from kinlab.doctor.text.alternatives import study, study_definition
-from kinlab.doctor.text.line import Change, Line, words_in
+from kinlab.doctor.text.line import Change, Line
 from kinlab.doctor.text.mend import Mended, rewritten, right_with_two
 from kinlab.doctor.text.written import Written
 from kinlab.errors import KinlabError
 from kinlab.formulas import tree
-from kinlab.formulas.text import canonical
+from kinlab.formulas.text import canonical, words_in
 from kinlab.tolerances import TOLERANCES
 
 _MOST = 300

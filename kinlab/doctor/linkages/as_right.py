@@ -7,7 +7,7 @@ and with whole turns more or less.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +23,7 @@ from kinlab.doctor.changes import Case
 from kinlab.doctor.linkages.five_bar import is_either
 from kinlab.doctor.linkages.looked_up import looked_up
 from kinlab.fivebar import FiveBar
+from kinlab.formulas.text import words_in
 from kinlab.host.language import _
 from kinlab.tolerances import TOLERANCES
 
@@ -40,6 +41,11 @@ _FACTORS = {
 """What an equation may be multiplied by, the likeliest first: a number, and a power of l1."""
 _SIDES = {"1": (1.0, 0), "-1": (-1.0, 0)}
 """The same of the loop's equation, by the side on which it stands."""
+_BRANCHED = {"sqrt", "acos", "arccos"}
+"""Functions with which a crank's angle is on one of two branches."""
+_MODES, _MODE = ((-1, 1), (1, 1), (-1, -1), (1, -1)), "({:+d}, {:+d})"
+_POWERS = ((0, 0), (-1, 0), (0, -1), (-2, 0), (0, -2), (-1, -1), (1, 0), (0, 1))
+"""Powers of l1 and l2 by which the loop's equation may be multiplied."""
 _LEG = 3
 """Numbers of a leg's equation: A, B and C."""
 _HALF = 2
@@ -106,6 +112,10 @@ def judged_kindly(case: Case, hand: Array, text: Written, factor: str, judge: Ju
         judge: judges the answers beside right ones.
     """
     every = [way for way in ways(case) if factor in ("", way.factor)]
+    if case.quantity.name.endswith("_loop"):
+        every += _times_any(case, hand)
+    if "mode" in case.quantity.arguments and not case.quantity.name.endswith("angles"):
+        every = _of_one_mode(case, hand, text) or every
     if len(every) == 1:
         return _said(every[0], judge(every[0].case, every[0].near(hand), every[0].answers))
     right = [way for way in every if way.holds(hand, text)]
@@ -120,6 +130,32 @@ def judged_kindly(case: Case, hand: Array, text: Written, factor: str, judge: Ju
             best = found
     assert best is not None
     return best
+
+
+def _of_one_mode(case: Case, hand: Array, text: Written) -> list[AsRight]:
+    """What a text has to be that works a crank's angle out by itself, and so on one branch.
+
+    The working mode that its answers are nearest to.
+    """
+    typed = {name for one in (text.text, *text.symbols.values()) for name in words_in(one)}
+    if typed.isdisjoint(_BRANCHED):
+        return []
+    every = [AsRight(_in_mode(case, signs), _MODE.format(*signs)) for signs in _MODES]
+    every.sort(key=lambda way: _typical(way, hand))
+    other = [x for x in every[1:] if not np.allclose(x.answers, every[0].answers)]
+    return [every[0], *other[:1]]
+
+
+def _in_mode(case: Case, signs: tuple[int, int]) -> Case:
+    """A quantity in one working mode, whichever is asked for."""
+    plain = case.quantity.engine
+
+    def engine(fivebar: FiveBar, *stacks: Any) -> Array:
+        given = dict(zip(case.quantity.arguments, stacks, strict=True))
+        given["mode"] = np.broadcast_to(np.array(signs, dtype=float), np.shape(given["mode"]))
+        return np.asarray(plain(fivebar, *given.values()))
+
+    return _with_engine(case, engine)
 
 
 def times(case: Case, hand: Array, engine: Array) -> tuple[Array, str] | None:
@@ -137,30 +173,82 @@ def times(case: Case, hand: Array, engine: Array) -> tuple[Array, str] | None:
     known = hand.shape == engine.shape and hand.dtype.kind in "iuf" and np.isfinite(hand).all()
     if not known or not name.endswith(("_equation", "_loop")):
         return None
-    if name.endswith("_equation"):
-        axis: Any = -1
-        if engine.ndim == 1 or engine.shape[-1] != _LEG:
-            return None  # A alone may be any number times another
+    if name.endswith("_loop"):
+        return _as_loop(case, hand, engine)
+    if engine.ndim > 1 and engine.shape[-1] == _LEG:
         told = _(
             "the equation is multiplied by a factor that A, B and C of a leg share: it is the same "
             "equation"
         )
+        same = _without_factor(hand, engine, -1)
+        return None if same is None else (same, told)
+    if engine.ndim == 1:  # A, B or C alone
+        for way in ways(case)[1:]:
+            if np.max(relative_errors(hand, way.answers)) <= TOLERANCES.formula_agrees:
+                return engine, _multiplied(way)
+    return None
+
+
+def _as_loop(case: Case, hand: Array, engine: Array) -> tuple[Array, str] | None:
+    """The loop's equation times a number, or one of lengths and not of their squares."""
+    same = _without_factor(hand, engine)
+    if same is not None:
+        return same, _("the equation is multiplied by a constant: it is the same equation")
+    lengths = np.asarray(_lengths(case).answer(()), dtype=float)
+    if np.max(relative_errors(hand, lengths)) <= TOLERANCES.formula_agrees:
+        same = lengths
     else:
-        axis = 0
-        told = _("the equation is multiplied by a constant: it is the same equation")
-        lengths = np.asarray(_lengths(case).answer(()), dtype=float)
-        if np.max(relative_errors(hand, lengths)) <= TOLERANCES.formula_agrees:
-            return engine, _("the equation is one of lengths: it is the same equation")
-    size = np.sum(engine * engine, axis=axis, keepdims=True)
-    factor = np.sum(hand * engine, axis=axis, keepdims=True) / size
+        same = _without_factor(hand, lengths)
+    told = _("the equation is one of lengths: it is the same equation")
+    return None if same is None else (engine, told)
+
+
+def _times_any(case: Case, hand: Array) -> Iterator[AsRight]:
+    """The loop's equation, or that of lengths, times what it is here, as powers of the lengths.
+
+    ``(x/l2)^2 + (y/l2)^2 - 1`` is that of squares by l2^2.
+    """
+    for one in (case, _lengths(case)):
+        right = np.asarray(one.answer(()), dtype=float)
+        same = _without_factor(hand, right)
+        if same is None:
+            continue
+        number = float(np.sum(hand * right) / np.sum(right * right))
+        for powers in _POWERS:
+            yield AsRight(_scaled(one, number, powers), "c")
+
+
+def _scaled(case: Case, here: float, powers: tuple[int, int]) -> Case:
+    """An equation times a number and powers of the lengths that are a factor at this five-bar."""
+    plain, own_linkage = case.quantity.engine, case.robot
+    assert isinstance(own_linkage, FiveBar)
+
+    def size(fivebar: FiveBar, stacks: Any) -> Array:
+        given = dict(zip(case.quantity.arguments, stacks, strict=True))
+        sizes = [fivebar.l1, fivebar.l2]
+        if "s" in given:
+            sizes = [one[leg_of(given["s"])] for one in sizes]
+        return np.asarray(math.prod(one**k for one, k in zip(sizes, powers, strict=True)))
+
+    def engine(fivebar: FiveBar, *stacks: Any) -> Array:
+        own = size(own_linkage, stacks)
+        return np.asarray(plain(fivebar, *stacks)) * here * size(fivebar, stacks) / own
+
+    return _with_engine(case, engine)
+
+
+def _without_factor(hand: Array, right: Array, axis: int = 0) -> Array | None:
+    """Answers without a factor that those along an axis share; None where none but 1 is."""
+    size = np.sum(right * right, axis=axis, keepdims=True)
+    factor = np.sum(hand * right, axis=axis, keepdims=True) / size
     least, most = float(np.min(np.abs(factor))), float(np.max(np.abs(factor)))
     if not least > TOLERANCES.formula_agrees * most:
         return None
     same = np.asarray(hand / factor)
-    if np.max(relative_errors(same, engine)) > TOLERANCES.formula_agrees:
+    if np.max(relative_errors(same, right)) > TOLERANCES.formula_agrees:
         return None
     plain = np.max(np.abs(factor - 1.0)) <= TOLERANCES.formula_agrees
-    return None if plain else (same, told)
+    return None if plain else same
 
 
 def _slips(found: Diagnosis) -> float:
@@ -190,16 +278,25 @@ def _turns(way: AsRight, hand: Array) -> float:
 def _said(way: AsRight, found: Diagnosis) -> Diagnosis:
     if way.factor == "1":
         return found
+    if found.agrees:
+        told = _multiplied(way)
+        return replace(found, form=found.form or "unusual", remarks=(*found.remarks, told))
+    return found
+
+
+def _multiplied(way: AsRight) -> str:
+    if way.factor.startswith("("):
+        said = _("it is of the working mode {mode} alone, the signs of crank x rod")
+        return said.format(mode=way.factor)
+    if way.factor == "c":
+        return _("the equation is multiplied by a constant: it is the same equation")
     of_one = way.case.quantity.name.endswith("_equation")  # A, B or C
     told = (
         _("it is multiplied by {factor}: right if A, B and C all are")
         if of_one
         else _("the equation is multiplied by {factor}")
     )
-    told = told.format(factor=way.factor)
-    if found.agrees:
-        return replace(found, form=found.form or "unusual", remarks=(*found.remarks, told))
-    return found
+    return told.format(factor=way.factor)
 
 
 def _with_engine(case: Case, answer: Callable[..., Any]) -> Case:

@@ -217,7 +217,7 @@ def _of_diagnoses(
         return _in_part(question, asked, file, robot)
     if all(one.agrees for one in asked):
         return _right(question, asked, file)
-    return _wrong(question, next(one for one in asked if not one.agrees), file, robot)
+    return _wrong(question, [one for one in asked if not one.agrees], file, robot)
 
 
 def _right(question: Question, asked: list[Diagnosis], file: FormulaFile | None) -> Outcome:
@@ -265,26 +265,40 @@ def _in_part(
     question: Question, asked: list[Diagnosis], file: FormulaFile | None, robot: Mechanism
 ) -> Outcome:
     """Some entries of a whole: the rest is no answer."""
+    names = ", ".join(one.function for one in asked if one.agrees)
+    rest = _("the other entries are not given")
+    place = _("{entries}: right; {rest}").format(entries=names, rest=rest) if names else rest
     wrong = [one for one in asked if not one.agrees]
-    if wrong:
-        return _wrong(question, wrong[0], file, robot)
-    names = ", ".join(one.function for one in asked)
-    place = _("{entries}: right; the other entries are not given").format(entries=names)
-    return wrong_outcome(question, 0.0, ("missing entries",), place)
+    if not wrong:
+        return wrong_outcome(question, 0.0, ("missing entries",), place)
+    found = _wrong(question, wrong, file, robot)
+    kinds = (*found.kinds, "missing entries")
+    outcome = wrong_outcome(question, 0.0, kinds, f"{found.place}{_('; ')}{place}", found.answer)
+    return replace(outcome, formulas=found.formulas, remark=found.remark)
 
 
 def _wrong(
-    question: Question, found: Diagnosis, file: FormulaFile | None, robot: Mechanism
+    question: Question, wrong: list[Diagnosis], file: FormulaFile | None, robot: Mechanism
 ) -> Outcome:
-    best = found.causes[0] if found.causes else None
-    kinds = tuple(best.kinds) if best is not None else ("unknown",)
-    places, formulas = _places(found, best, file, robot)
+    """Entries that are judged each for itself cost what the slips of each do."""
+    kinds: list[str] = []
+    places: list[str] = []
     answer: list[str] = []
-    if best is not None:
-        answer = [found.sentence, *(f"{_named(k)} = {v}" for k, v in best.corrected.items())]
-    points, place = points_left(question, kinds), _("; ").join(places)
-    outcome = wrong_outcome(question, points, kinds, place, tuple(answer), formulas)
-    if found.form != "near":
+    marked: dict[str, str] = {}
+    for found in wrong:
+        best = found.causes[0] if found.causes else None
+        kinds += best.kinds if best is not None else ("unknown",)
+        where, formulas = _places(found, best, file, robot)
+        places += where
+        for name, latex in formulas:
+            if name not in marked or r"\wrong{" in latex:
+                marked[name] = latex
+        if best is not None:
+            answer += [found.sentence, *(f"{_named(k)} = {v}" for k, v in best.corrected.items())]
+    points, place = points_left(question, kinds), _("; ").join(dict.fromkeys(places))
+    read = tuple(marked.items())
+    outcome = wrong_outcome(question, points, tuple(kinds), place, tuple(answer), read)
+    if all(found.form != "near" for found in wrong):
         return outcome
     return replace(outcome, remark=_("nearly right, and nobody can tell why: mark it by hand"))
 

@@ -30,7 +30,7 @@ from kinlab.doctor.program.own.typed import line_of
 from kinlab.doctor.program.places import BLOCKS, DATA, ProgramEdit, changed, row_of
 from kinlab.doctor.program.read import read
 from kinlab.doctor.program.search.repair import LineSearch, ProgramRepair
-from kinlab.doctor.program.several.repairs import of_mistyped, several
+from kinlab.doctor.program.several.repairs import of_mistyped, several, single
 from kinlab.doctor.program.trial import FailedError, FieldChange, NoProgramError, Trial, quietly
 from kinlab.doctor.verdicts import Excuse, rounded_otherwise
 from kinlab.host.language import N_, _
@@ -168,7 +168,7 @@ def lines(
         yield WrongLines([], search.written_out, numbers, excuse)
         return
     odd = any(True for _edit in of_table(search.trial, search.observed, case.robot))
-    for found in (of_mistyped, LineSearch.singles, several):
+    for found in (of_mistyped, single, several):
         repairs = found(search)[:_MOST]
         if not search.asked.faithful:
             return  # an edit has written into what the program keeps

@@ -22,6 +22,7 @@ from kinlab.doctor.text.stand_ins import FREE, fitted, rounding_remarks, stand_i
 from kinlab.doctor.text.written import Written
 from kinlab.formulas import tree
 from kinlab.formulas.record import SIDES
+from kinlab.formulas.text import words_in
 from kinlab.host.language import _
 from kinlab.symbolic.vocabulary import vocabulary
 from kinlab.tolerances import TOLERANCES
@@ -131,7 +132,7 @@ def _words(text: Written) -> set[str]:
     found: set[str] = set()
     waiting = [text.text]
     while waiting:
-        for word in set(re.findall(r"[A-Za-z_]\w*", waiting.pop())) - found:
+        for word in {*words_in(waiting.pop())} - found:
             found.add(word)
             waiting += [text.symbols[word]] if word in text.symbols else []
     return found | {str(text.known[word].value) for word in found & set(text.known)}

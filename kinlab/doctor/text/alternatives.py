@@ -24,12 +24,11 @@ from kinlab.doctor.text.line import (
     is_product,
     is_sum,
     is_term,
-    words_in,
 )
 from kinlab.doctor.text.meanings import CLOSE
 from kinlab.doctor.text.throughout import NUMBERS, alike, throughout
 from kinlab.formulas import tree
-from kinlab.formulas.text import canonical
+from kinlab.formulas.text import canonical, words_in
 from kinlab.formulas.tree import Node
 from kinlab.host.language import N_
 
@@ -661,7 +660,7 @@ def _in_brackets(line: Line, place: Place) -> bool:
 def _factors(line: Line, term: str) -> list[str]:
     """The robot's names of a product, whatever number stands in front of it."""
     if term not in line.factored:
-        found = re.findall(r"([A-Za-z_]\w*)((?:\*\*\d)?)", term)
+        found = re.findall(r"(?<![\w.])([A-Za-z_]\w*)((?:\*\*\d)?)", term)
         own = ((words_in(line.text.symbols.get(name, name)), power) for name, power in found)
         line.factored[term] = sorted(f"{word}{power}" for words, power in own for word in words)
     return line.factored[term]

@@ -21,7 +21,7 @@ from kinlab.arrays import Array
 from kinlab.doctor.text.meanings import Meanings, coefficients
 from kinlab.doctor.text.written import Written, operands
 from kinlab.formulas import tree
-from kinlab.formulas.text import SHORTHAND, canonical, joint_spelling, parse, respelled
+from kinlab.formulas.text import SHORTHAND, canonical, joint_spelling, parse, respelled, words_in
 from kinlab.formulas.tree import Node
 from kinlab.host.language import N_, _
 from kinlab.tolerances import TOLERANCES
@@ -475,10 +475,6 @@ def brief(text: str) -> str:
     first = max((k for k in ends if k <= _LONGEST // 2), default=_LONGEST // 2)
     last = min((k for k in ends if k >= len(text) - _LONGEST // 3), default=len(text) - 12)
     return f"{text[:first]} ... {text[last:].strip()}"
-
-
-def words_in(text: str) -> list[str]:
-    return re.findall(r"[A-Za-z_]\w*", text)
 
 
 def is_sum(node: ast.AST | None) -> TypeGuard[ast.BinOp]:

@@ -20,10 +20,10 @@ from kinlab.doctor.text.line import (
     is_product,
     is_sum,
     is_term,
-    words_in,
 )
 from kinlab.doctor.text.pairs import pairs_adding_up, pairs_in_product
 from kinlab.formulas import tree
+from kinlab.formulas.text import words_in
 from kinlab.tolerances import TOLERANCES
 
 _TRIED = 60

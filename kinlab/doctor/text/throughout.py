@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 
 import numpy as np
 
-from kinlab.doctor.text.line import Line, words_in
+from kinlab.doctor.text.line import Line
+from kinlab.formulas.text import WORD, words_in
 from kinlab.host.language import N_
 
 NUMBERS = {"1": 1.0, "2": 2.0, "3": 3.0, "4": 4.0, "6": 6.0, "8": 8.0, "12": 12.0, "0.5": 0.5}
@@ -78,7 +78,7 @@ def _global(
     pieces: dict[str, str],
 ) -> None:
     table = dict(swap)
-    new = re.sub(r"[A-Za-z_]\w*", lambda m: table.get(m.group(), m.group()), line.source)
+    new = WORD.sub(lambda m: table.get(m.group(), m.group()), line.source)
     if new == line.source:
         return
     try:

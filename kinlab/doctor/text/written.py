@@ -20,7 +20,7 @@ from kinlab.formulas import tree
 from kinlab.formulas.arithmetic import read
 from kinlab.formulas.evaluate import combined
 from kinlab.formulas.retyped import Typing
-from kinlab.formulas.text import canonical
+from kinlab.formulas.text import canonical, words_in
 from kinlab.formulas.tree import Node
 
 _DECIMAL = re.compile(r"(\d*)\.?(\d*)(?:[eE]([+-]?\d+))?")
@@ -178,15 +178,11 @@ class Written:
         What is a part of a single other name, ``lc3`` of ``l3``, stays.
         """
         texts = {"": self.text, **{x: self.symbols[x] for x in self._used[1:]}}
-        met = [name for text in texts.values() for name in re.findall(r"[A-Za-z_]\w*", text)]
+        met = [name for text in texts.values() for name in words_in(text)]
         opened, left = self, dict(self.symbols)
         for name in self.definitions:
-            several = len({*re.findall(r"[A-Za-z_]\w*", self.symbols[name])}) > 1
-            if (
-                several
-                and met.count(name) == 1
-                and name in re.findall(r"[A-Za-z_]\w*", opened.text)
-            ):
+            several = len({*words_in(self.symbols[name])}) > 1
+            if several and met.count(name) == 1 and name in words_in(opened.text):
                 inner = left.pop(name)
                 text = re.sub(rf"\b{name}\b", lambda _, inner=inner: f"({inner})", opened.text)  # type: ignore[misc]
                 opened = replace(opened, text=text, symbols=left, typing=None)

@@ -36,7 +36,7 @@ _WORDS = {typeset: _words(least) for typeset, least in ((False, 2), (True, 4))}
 """In LaTeX a few letters side by side are a product."""
 _PHRASE = re.compile(rf"[{LATIN}{CHINESE}\d'’ ,.;:-]*")
 _SIGNS_IN = ("*", "/", "^", "+", "=", "(", ")", "}", "]")
-_ENDING = re.compile(rf"^(?:[{LATIN}]*\d\w*|\w)[ ,.;:-]+(?=\S)")
+_ENDING = re.compile(rf"^(?:\d+[.,]\d+|[{LATIN}]*\d\w*|\w)[ ,.;:-]+(?=\S)")
 """The last name of a formula, in front of words."""
 _FRAME = re.compile(
     r"\bpart \(?[a-h1-9]\b"
@@ -55,6 +55,13 @@ _PART = re.compile(
     r"|(?:第(?P<chinese>[一二三四1-9])个?)?(?:关节|连杆|杆|支链|杆件|轴)(?P<behind>[1-9])?",
     re.IGNORECASE,
 )
+_SUBJECT = re.compile(
+    r"\W*(?:the\s+|das\s+)?(?:joint\s+|driving\s+|motor\s+)?"
+    r"(?:torque|moment|drehmoment|gelenkmoment|antriebsmoment)\s+"
+    r"(?:of|at|for|in|on|des|am|im|an)\s+(?:the\s+|der\s+)?",
+    re.IGNORECASE,
+)
+"""What begins a text that says whose torque it gives."""
 _AXIS = re.compile(r"achsen?\b", re.IGNORECASE)
 _ORDINAL = re.compile("第[一二三四1-9]轴")
 """A joint, where a number says which."""
@@ -204,6 +211,15 @@ def moment_elsewhere(text: str) -> str:
     return found[0][:_MOST]
 
 
+def of_another_part(text: str, entry: str) -> str:
+    """What says first that it is of another joint: ``torque of the first joint`` of tau2."""
+    plain, own = flat(text), {*re.findall(r"\d", _counted_from_1(entry))}
+    begins = _SUBJECT.match(plain)
+    found = _PART.match(plain, begins.end()) if begins and own else None
+    number = _number_of(found) if found else ""
+    return plain[: found.end()].strip()[:_MOST] if found and number and number not in own else ""
+
+
 def _used(word: str, text: str) -> bool:
     """Whether a word is a name in the formula."""
     name = rf"(?<![A-Za-z]){re.escape(word)}(?![A-Za-z])"
@@ -331,18 +347,22 @@ def around(prose: str, start: int, end: int) -> str:
         said = _ENDING.sub("", said)
     if prose[end : end + 1] in ("=", "_") and " " in said:
         said = said.rpartition(" ")[0]  # the name of the formula
-    return said.strip(" ,.;:-")[:_MOST]
+    return re.sub(r"\s+;\s+", " ... ", said.strip(" ,.;:-"))[:_MOST]
 
 
 def _parts(prose: str, entry: str) -> list[tuple[str, str]]:
     """Links and joints by their number that are not the entry's own: joint 2 of x, or of tau1."""
-    own = set(re.findall(r"\d", entry))
-    if "[" in entry:  # of a quantity, counted from 0
-        own = {str(int(k) + 1) for k in own}
-    found = []
-    for one in _PART.finditer(prose):
-        told = one["order"] or one["chinese"]
-        number = one["number"] or one["behind"] or (told and str(_ORDER.get(told.lower(), told)))
-        if number and number not in own:
-            found.append((one[0], around(prose, *one.span())))
-    return found
+    own = {*re.findall(r"\d", _counted_from_1(entry))}
+    every = ((one, _number_of(one)) for one in _PART.finditer(prose))
+    other = (one for one, number in every if number and number not in own)
+    return [(one[0], around(prose, *one.span())) for one in other]
+
+
+def _counted_from_1(entry: str) -> str:
+    """An entry with its places counted from 1: those of a quantity are from 0."""
+    return re.sub(r"\d", lambda k: str(int(k[0]) + 1), entry) if "[" in entry else entry
+
+
+def _number_of(part: re.Match[str]) -> str:
+    told = part["order"] or part["chinese"] or ""
+    return part["number"] or part["behind"] or str(_ORDER.get(told.lower(), told))

@@ -34,7 +34,13 @@ _LETTERS = re.compile(
 )
 _COMMENT = re.compile(r"(?<!\\)(?<![\d ] )(?:^|(?<=[\s;]))%[^\n=]*$", re.MULTILINE)
 """A comment of LaTeX's or MATLAB's, without an equation in it."""
-_OPERATOR = re.compile(r"[*/^+=<>]")
+_ABOUT = re.compile(
+    rf"(?<![\w*/^+=-])[xyz]-(?=(?:coordinate|component|position|koordinate|komponente)[{LATIN}]*)"
+    r"|\(\s*units?\s*:\s*[A-Za-z/^0-9 ]{1,12}\)",
+    re.IGNORECASE,
+)
+"""Letters that are part of a word, and a unit in parentheses."""
+_OPERATOR = re.compile(r"[*/^+=<>]|\\(?:sin|cos|tan|d?frac|sqrt)(?![A-Za-z])")
 _UNIT = re.compile(r"\s*(?:(?:SI|the|units?|of)\s+)*(?:mm|cm|dm|km|m|kg|N|Nm|J|rad|s|deg)\b")
 _GAP = "\0"
 _BETWEEN = re.compile(
@@ -82,7 +88,7 @@ def without_sentences(text: str, entry: str) -> str:
     if _PROGRAM.search(text) or len(_WORD.findall(text)) > _MOST:
         return text
     text = _DENOTES.sub(r"\1 = ", _DENOTES_IN_MATHS.sub(r"\1 = ", text))
-    text = _COMMENT.sub("", text)
+    text = _ABOUT.sub(" ", _COMMENT.sub("", text))
     opened = _FONT.sub(lambda found: _opened(found, text), text)
     marked = _marked(opened)
     if _GAP not in marked and MATHS.search(opened) and "=" in MATHS.sub(" ", opened):

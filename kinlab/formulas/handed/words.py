@@ -15,6 +15,7 @@ from kinlab.formulas.handed.prose import (
     explained_by,
     flat,
     moment_elsewhere,
+    of_another_part,
     outside_formulas,
 )
 from kinlab.formulas.handed.sentences import without_sentences
@@ -37,7 +38,11 @@ _OTHERWISE = re.compile(
     r"|\bup\s+to\s+(?:the\s+|a\s+|its\s+)?(?:\w+\s+)?(?:sign|factor|scale|order)\w*"
     r"|\bbis\s+auf\s+(?:das\s+|den\s+|einen\s+|ein\s+)?(?:\w+\s+)?(?:vorzeichen|faktor)\w*"
     r"|(?:相差|差|除了|除)一?个?(?:正负|负)?(?:符号|号|系数|因子)|符号相反|单位质量|单位长度"
-    r"|(?:单位[:：为是]*|以)(?:度|毫米|厘米)",
+    r"|(?:单位[:：为是]*|以)(?:度|毫米|厘米)"
+    r"|\b(?:rpm|rev/min|u/min|(?:revolutions?|rotations?|turns?)\s+per|umdrehung\w*)\b|转每分|每分钟|转/分"
+    r"|\b(?:approximat\w*|näherung\w*|genähert\w*|missing|forg[eo]t(?:ten)?|fehl(?:t|en))\b|近似|缺少|漏掉"
+    r"|(?<!counter)(?<!counter[ -])(?<!anti)(?<!anti[ -])\bclockwise\b"
+    r"|\bim\s+uhrzeigersinn\b|顺时针",
     re.IGNORECASE,
 )
 """Words that say what a name means in another way than the robot's, or that a formula is none."""
@@ -96,7 +101,8 @@ def _refuse_meanings(text: str, entry: str, place: str) -> None:
         if found:
             said = N_("{words!r} beside the formula may change what its names mean; leave it out")
             raise refused(place, said, words=around(prose, *found.span()))
-    if said_otherwise := _of_another_coordinate(text, entry) or moment_elsewhere(text):
+    other = _of_another_coordinate(text, entry) or moment_elsewhere(text)
+    if said_otherwise := other or of_another_part(text, entry):
         said = N_("{words!r} beside the formula is not what it is asked for; leave it out")
         raise refused(place, said, words=said_otherwise)
     if _DENIED.search(_FORMULA.split(text)[0]) or condition_in_front(text, entry):

@@ -232,6 +232,7 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Progra
         and here.above[-2].slice is here.parent
     )
     whole = seen is not None and seen.whole and shape == ()
+    whole = whole and not (isinstance(node, ast.Name) and node.id in scope.measures)
     if isinstance(node, ast.BinOp):
         yield from of_operator(here, observed, index or whole)
         yield from of_links(here, observed) if isinstance(node.op, ast.MatMult) else ()

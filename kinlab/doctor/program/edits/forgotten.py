@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from functools import reduce
 from itertools import combinations, permutations
 
-from kinlab.doctor.bytecode.syntax import called, copied, factors, names, nodes
+from kinlab.doctor.bytecode.syntax import called, copied, factors, names, nodes, text_of
 from kinlab.doctor.program.edits.additions import OtherAxis, summed
 from kinlab.doctor.program.edits.exchanges import Renamed
 from kinlab.doctor.program.edits.scope.forms import Turned, named, summands
@@ -42,6 +42,9 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
     if isinstance(node, ast.Constant | ast.List | ast.Tuple):
         return
     op = parent.op if isinstance(parent, ast.BinOp) else None
+    given = isinstance(parent, ast.Call) and called(parent) not in ANGLES and here.field != "func"
+    if given or isinstance(op, ast.Mult) or isinstance(parent, ast.List | ast.Tuple):
+        yield from _under_a_wave(here, scope, shape)
     if shape == ():
         if isinstance(node, ast.BinOp) and not isinstance(op, _SUMS):
             yield from _with_indices_exchanged(here, scope)
@@ -50,19 +53,27 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
             yield here.instead(number(0.0), "extra term", 1.18)
         if isinstance(op, _SUMS):
             yield from _with_vectors(here, scope)
+            for dot in scope.dots.values():
+                yield here.instead(ast.BinOp(node, ast.Mult(), dot), "missing factor", 1.12)
         if isinstance(parent, _SET):
             yield from _energies(here, scope)
             yield from _of_all_joints(here, scope)
         if isinstance(parent, _SET | ast.List | ast.Tuple):
             yield from _crosswise(here)
+        if isinstance(parent, ast.List | ast.Tuple):
+            yield from _as_beside(here, parent.elts)
         if isinstance(parent, _SET) or isinstance(op, ast.Mult):
             yield from _of_idle_numbers(here, scope)
         if isinstance(op, _SUMS) and isinstance(node, ast.BinOp):
             yield from _part_across(here, scope)
-        if isinstance(op, ast.Mult) and isinstance(node, ast.Call) and called(node) == "cos":
+        wave = isinstance(node, ast.Call) and called(node) == "cos"
+        wave = wave or (isinstance(node, ast.Name) and node.id in scope.sines)
+        if isinstance(op, ast.Mult) and wave:
             yield here.instead(ast.BinOp(number(1), ast.Sub(), node), "missing term", 1.1)
         if isinstance(op, ast.Mult) and not isinstance(node, ast.Name | ast.Call):
             yield from _inside_products(here, scope)
+        if isinstance(node, ast.BinOp) and isinstance(node.op, _SUMS) and not isinstance(op, _SUMS):
+            yield from _of_the_third(here, scope)
         yield from _of_another_row(here, scope)
         yield from _of_the_point(here, scope)
         return
@@ -482,6 +493,44 @@ def _with_angles(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
             yield here.instead(new, "missing factor", 1.12)
 
 
+def _as_beside(here: Here, entries: Sequence[ast.expr]) -> Iterator[ProgramEdit]:
+    """A factor that an entry beside it has, with its sign: ``[s12, a2*c12]`` for ``-a2*s12``."""
+    used = {*names(here.node)}
+    every = [x for one in entries if one is not here.node for x in factors(one)]
+    for factor in {x.id: x for x in every if isinstance(x, ast.Name)}.values():
+        if factor.id not in used:
+            new = ast.BinOp(ast.UnaryOp(ast.USub(), factor), ast.Mult(), here.node)
+            yield here.instead(new, "missing factor", 1.15)
+
+
+def _under_a_wave(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
+    """An angle whose sine or cosine is meant: ``l1*th2`` for ``l1*sin(th2)``."""
+    text = text_of(here.node)
+    for piece in scope.pieces.get(shape, {}).values() if text in scope.angles else ():
+        if not isinstance(piece, ast.Call) or called(piece) not in ANGLES or not piece.args:
+            continue
+        if text_of(piece.args[0]) == text:
+            yield here.instead(copied(piece), "function", 1.08)
+
+
+def _of_the_third(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """A term as the others, of a name like theirs that is set here, too: ``A*A + B*B - C*C``."""
+    node, used = here.node, {*names(here.node)}
+    free = [one for one in scope.set_at if one not in used and scope.shapes.get(one) == ()]
+    for term in summands(node):
+        for name in dict.fromkeys(names(term)):
+            for other in (one for one in free if _are_of_one_row(one, name)):
+                new = Renamed({name: ast.Name(other, ast.Load())}).of(term)
+                for op in (ast.Add(), ast.Sub()):
+                    yield here.instead(ast.BinOp(node, op, new), "missing term", 1.08)
+
+
+def _are_of_one_row(one: str, other: str) -> bool:
+    """Whether two names differ by their last sign alone: A and B, vx and vy, m1 and m2."""
+    cased = one[-1].isupper() == other[-1].isupper() and one[-1].isdigit() == other[-1].isdigit()
+    return cased and one[:-1] == other[:-1]
+
+
 def with_slices(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """Entries from a place on, times those of another row: ``l[j:]*sin(phi[j:])``."""
     node = here.node
@@ -614,6 +663,7 @@ def _calls(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
             added += [ast.Call(scope.cross, [one, call], []) for one in rates[:_FEW]]
         for one in added:
             yield here.instead(ast.BinOp(node, ast.Add(), one), "missing term", 1.1)
+            yield here.instead(ast.BinOp(node, ast.Sub(), one), "missing term", 1.12)
 
 
 def _turned_matrices(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:

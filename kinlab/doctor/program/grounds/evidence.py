@@ -36,6 +36,8 @@ _COINCIDENT = 0.04
 """What a factor costs more that a name of the program has as its value: 1/2 where l1 is 0.5."""
 _UNLIKE = 0.15
 """What it costs more to add numbers whose names are those of a mass and of a length."""
+_BESIDE_NOTHING = 0.15
+"""What it costs more to add a term beside one like it that is nothing at all."""
 _SPOILED = 0.15
 """What an edit costs more that spoils what is right."""
 _SHARED = 0.05
@@ -133,6 +135,7 @@ class Grounds:
             if isinstance(node.value.op, ast.MatMult) and (step := _step(node.targets[0]))
         }
         self.agreed = {id(node) for tree in trial.trees for node in self._agreed(tree)}
+        self.silent = self._silent()
         if not known:
             return
         for part, tree in enumerate(trial.trees):
@@ -181,9 +184,41 @@ class Grounds:
             return -_MEANT
         unlike_ = self._adds_unlike(edit.changes[0].new) or self._takes_another_centre(edit)
         more = _UNLIKE if unlike_ or self._spoils_a_number(edit) else 0.0
+        more += _BESIDE_NOTHING if self._is_beside_nothing(edit) else 0.0
         more += _AGREED if id(edit.node) in self.agreed else 0.0
         more += _USED * self._where_it_is_used(edit) + _RENAMED * self._turns_a_renamed(edit)
         return more + (_TRUSTED if edit.part in self.trusted else 0.0)
+
+    def _is_beside_nothing(self, edit: ProgramEdit) -> bool:
+        """Whether a term is added beside one like it that is nothing: rather that one is wrong.
+
+        ``cross(w, z*qd)`` of this arm, where ``cross(R.T @ w, z*qd)`` would be added.
+        """
+        silent, new = self.silent.get(id(edit.node), []), edit.changes[0].new
+        if edit.kind != "missing term" or not silent or not isinstance(new, ast.BinOp):
+            return False
+        known = {*map(ast.dump, summands(edit.node))}
+        put = [x for x in summands(new) if isinstance(x, ast.Call) and ast.dump(x) not in known]
+        return any(_are_alike(one, other) for one in put for other in silent)
+
+    def _silent(self) -> dict[int, list[ast.Call]]:
+        """Of sums, and what they are made of, the terms that are nothing; by identity."""
+        found: dict[int, list[ast.Call]] = {}
+        for tree in self.trial.trees:
+            for node in nodes(tree):
+                if not isinstance(node, ast.BinOp) or not isinstance(node.op, ast.Add | ast.Sub):
+                    continue
+                calls = [
+                    x for x in summands(node) if isinstance(x, ast.Call) and self._is_nothing(x)
+                ]
+                for inner in (node, *_sums_in(node)) if calls else ():
+                    found.setdefault(id(inner), calls)
+        return found
+
+    def _is_nothing(self, node: ast.expr) -> bool:
+        """Whether an expression was zero wherever it was seen."""
+        seen = self.observed.of(node)
+        return seen is not None and bool(seen.values) and not any(map(np.any, seen.values))
 
     def _spoils_a_number(self, edit: ProgramEdit) -> bool:
         """Whether an edit turns round a number that the robot has as it is typed."""
@@ -631,3 +666,17 @@ def _is_rotation(value: Array) -> bool:
     """Whether a 3 x 3 matrix is one."""
     near = np.allclose(value @ value.T, np.eye(3), atol=TOLERANCES.formula_agrees)
     return near and bool(np.linalg.det(value) > 0.0)
+
+
+def _sums_in(node: ast.expr) -> Iterator[ast.expr]:
+    """The terms of a sum, and the sums that it is made of."""
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
+        for side in (node.left, node.right):
+            yield side
+            yield from _sums_in(side)
+
+
+def _are_alike(one: ast.Call, other: ast.Call) -> bool:
+    """Whether two calls are of one function, with an argument that is the same."""
+    given = ({*map(ast.dump, call.args)} for call in (one, other))
+    return called(one) == called(other) and bool(set.intersection(*given))

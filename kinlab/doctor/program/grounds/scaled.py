@@ -271,8 +271,13 @@ def holds_an_arm(trial: Trial) -> bool:
 
 
 def twisted_by(table: DHTable, found: Sequence[ProgramNumber]) -> float:
-    """How many times as large twists are, where the program's numbers hold them."""
+    """How many times as large twists are, where the program's numbers hold them.
+
+    Where all axes are parallel a program may count on it, and turn by sums of angles.
+    """
     twists = [link.alpha for link in table.links if link.alpha]
+    if all(math.isclose(abs(x), math.pi) for x in twists):
+        return 1.0
     held = np.array([one.value for one in found if one.alone and one.used])
     turned = bool(twists) and all(_among(x, held) for x in twists) and not _shared(table, held)
     return _TWISTED if turned else 1.0

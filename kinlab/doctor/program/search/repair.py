@@ -131,6 +131,7 @@ class LineSearch:
     def __init__(self, program: OwnProgram, case: Case, wanted: Array, allowed: float) -> None:
         self.stand: tuple[ProgramEdit, ...] = ()
         self.tried: list[tuple[ProgramEdit, Array]] = []
+        self._alone: list[ProgramRepair] | None = None
         self.most, self.thorough = _WORK, True
         self.trial, self.case = Trial(program), case
         self.asked = Asked(self.trial, case, wanted, allowed)
@@ -187,6 +188,7 @@ class LineSearch:
         """
         other = copy.copy(self)
         other.stand, other.tried, other.thorough = stand, [], thorough
+        other._alone = None
         if not thorough:
             other.most, other.in_lanes, other.heavy = self.most // _SHARE, 0, False
         other.work = copy.copy(self.work)
@@ -204,8 +206,15 @@ class LineSearch:
         """Single edits that make the program right, the likeliest first.
 
         Args:
-            below: what they cost at most.
+            below: what they cost at most; of any cost they are looked for once.
         """
+        if below < np.inf:
+            return self._singles(below)
+        if self._alone is None:
+            self._alone = self._singles(below)
+        return self._alone
+
+    def _singles(self, below: float) -> list[ProgramRepair]:
         found: list[ProgramRepair] = []
         best, doubted = np.inf, False
         limit = _ALONE if self.thorough else self.most

@@ -40,6 +40,8 @@ class Work:
         loops = [one for tree in trees for one in nodes(tree) if isinstance(one, ast.For)]
         longest = max((_turns_left(one, observed) for one in loops), default=0)
         self.longer = max(_LONGER, longest // _REACHED) if any(ending) else 1
+        if self.longer > 1:  # what begins otherwise is iterated anew, wherever it is changed
+            self.amounts = dict.fromkeys(self.amounts, max(self.amounts.values()))
         self.first, self.watched = len(asked.first), len(asked.watched)
 
     def of(self, edit: ProgramEdit) -> int:

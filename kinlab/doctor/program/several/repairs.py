@@ -24,6 +24,7 @@ from kinlab.doctor.program.several.rest import AtRest
 from kinlab.doctor.program.several.together import TriedTogether
 from kinlab.doctor.program.several.witnesses import Witnesses
 from kinlab.doctor.program.trial import NoProgramError, quietly
+from kinlab.tolerances import TOLERANCES
 
 _VERIFIED = 60
 """Combinations of which edits of the same effects are tried, too."""
@@ -72,6 +73,10 @@ _DEEPEST = 2
 """Edits beside which one more is looked for, and no two."""
 _FAR = 1.12
 """Cost of an edit that is far-fetched."""
+_FARTHEST = 1.2
+"""Cost of one edit in place of which two plain ones are looked for."""
+_HEAVIEST = 2_000_000
+"""Work for one run of a program beyond which no several edits are looked for."""
 _ODD = 2
 """Numbers that are off beside the arm's of which each is mended first."""
 _POSE = (4, 4)
@@ -84,11 +89,28 @@ def several(search: LineSearch) -> list[ProgramRepair]:
     Args:
         search: whose single edits were tried already.
     """
+    if search.work.of_all(search.work.first) > _HEAVIEST:
+        return []
     with quietly():
         looking = _Several(_SHARE * search.most // 10)
         return looking.of_fewer(
             search, [_reduced(repair, search) for repair in looking.found(search)]
         )
+
+
+def single(search: LineSearch) -> list[ProgramRepair]:
+    """One edit that makes the program right; two plain ones where that one is far-fetched.
+
+    The two are likelier if they leave more of the program as a textbook has it.
+    """
+    found = search.singles()
+    if not found or search.likely(found[0].edits[0]) < _FARTHEST:
+        return found
+    two = several(search)[:1]
+    if not two or len(two[0].edits) > _DEEPEST or max(map(search.likely, two[0].edits)) >= _FAR:
+        return found
+    more = search.left_right(two[0].edits) > search.left_right(found[0].edits)
+    return two if more else found
 
 
 def of_mistyped(search: LineSearch) -> list[ProgramRepair]:
@@ -107,6 +129,9 @@ def of_mistyped(search: LineSearch) -> list[ProgramRepair]:
         own = of_table(search.trial, search.observed, search.case.robot)
         if any(tried.fits((edit,)) for edit in own):
             return []
+        single = search.singles()
+        if single and single[0].cost < _FAR and single[0].error <= TOLERANCES.formula_agrees:
+            return []  # what one plain edit explains needs no number beside it
         for way in odd:
             with changed(search.trial, way):
                 here = _beside(search, way, thorough=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Sequence
 
-from kinlab.doctor.bytecode.syntax import copied, names, nodes
+from kinlab.doctor.bytecode.syntax import called, copied, names, nodes, text_of
 from kinlab.doctor.program.edits.scope.forms import entry, named
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.trial import Trial
@@ -41,6 +41,32 @@ def counts(tree: ast.FunctionDef, observed: Observed, known: list[str]) -> list[
             seen = observed.of(node)
             if seen is not None and seen.whole and seen.shape == ():
                 found.append(node.id)
+    return found
+
+
+_SHAPED = ("range", "zeros", "eye", "ones", "empty", "full", "arange", "linspace", "reshape")
+
+
+def measures(trial: Trial) -> set[str]:
+    """The names of whole numbers of the user's data that count nothing: 90 of a length in mm."""
+    found = {name for name in trial.program.data if type(trial.space.get(name)) is int}
+    if not found:
+        return found
+    for node in (one for tree in trial.trees for one in nodes(tree)):
+        shaped = isinstance(node, ast.Call) and called(node) in _SHAPED
+        if isinstance(node, ast.Compare) or shaped:
+            found -= {*names(node)}
+        elif isinstance(node, ast.Subscript):
+            found -= {*names(node.slice)}
+    return found
+
+
+def indices(tree: ast.AST) -> dict[str, set[str]]:
+    """The names by which entries of a row are taken, by the row's text."""
+    found: dict[str, set[str]] = {}
+    for node in nodes(tree):
+        if isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Name):
+            found.setdefault(text_of(node.value), set()).add(node.slice.id)
     return found
 
 

@@ -63,6 +63,9 @@ class Knowledge:
         root: what gives square roots, where it is known.
         cross: what gives the product of two vectors, where it is known.
         whole: names of whole numbers that are given to a function, and counters.
+        dots: products of two vectors that are given to one function together.
+        measures: names of whole numbers that count nothing.
+        indices: the names by which entries of a row are taken, by the row's text.
     """
 
     def __init__(self, trial: Trial, observed: Observed, part: int) -> None:
@@ -71,6 +74,7 @@ class Knowledge:
         self.shapes: dict[str, Shape] = {}
         self.lists: dict[str, Shape] = {}
         self.angles: dict[str, ast.expr] = {}
+        self.dots: dict[str, ast.expr] = {}
         self.taken: Counter[str] = Counter()
         self.pieces: pieces.Pieces = {}
         self.idle: list[pieces.Sized] = []
@@ -196,6 +200,15 @@ class Knowledge:
             known.setdefault(text_of(bare), copied(bare))
         if isinstance(own, ast.Call) and called(own) in ANGLES and own.args:
             self._read_angle(own, known)
+        if isinstance(own, ast.Call) and len(own.args) == 2 and not own.keywords:
+            self._read_pair(*own.args)
+
+    def _read_pair(self, one: ast.expr, other: ast.expr) -> None:
+        """Two vectors that are given on together: what is asked of them beside is their product."""
+        shapes = {self.shapes.get(getattr(x, "id", ""), ()) for x in (one, other)}
+        if len(shapes) == 1 and len(*shapes) == 1:
+            dot = ast.BinOp(one, ast.MatMult(), other)
+            self.dots.setdefault(text_of(dot), dot)
 
     def _read_angle(self, call: ast.Call, known: dict[str, ast.expr]) -> None:
         """What a sine or cosine is taken of; the other of the two is as good a piece."""
@@ -222,6 +235,8 @@ class Knowledge:
         """What is asked of its counters; those that are numbers."""
         self.tests = counters.tests(tree, trial, [*self.counters, *self._run_over])
         self.counters = [name for name in self.counters if self.shapes.get(name, ()) == ()]
+        self.measures = counters.measures(trial)
+        self.indices = counters.indices(tree)
         self.whole = [*self.counters, *counters.counts(tree, self.observed, self.counters)]
 
     def _know_numbers(self, trial: Trial) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import permutations
 from typing import Any
 
@@ -24,6 +24,8 @@ _LONGEST = 6
 """Entries of a list of which any two may have been exchanged."""
 _THREE = 3
 """Indices of which any order is tried."""
+_COUNTED = 1.09
+"""Cost of an index by which entries of other rows are taken."""
 _BESIDE = 1.06
 """Cost of an index that another row has in the same line."""
 
@@ -33,6 +35,8 @@ def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
     shape = observed.shape(node.value)
     if isinstance(node.slice, ast.Constant) and isinstance(node.slice.value, str):
         yield from _of_key(here, node.slice, scope)
+        if shape is None and observed.shape(node) == ():
+            yield from _with_keys(here, node.slice, scope)
         return
     if _is_stacked(node):
         if isinstance(node.slice, ast.Tuple) and len(node.slice.elts) <= _LONGEST:
@@ -62,8 +66,8 @@ def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
                 if other != value_of(key) and not (other == -1 and size):
                     near = other in alike or abs(other - value_of(key)) == 1
                     yield here.within(holder, field, number(other), "index", 1.05 if near else 1.1)
-            for name in scope.counters:
-                cost = _BESIDE if name in beside else 1.13
+            for name in scope.whole:
+                cost = _by_counter(name, node, scope, beside)
                 yield here.within(holder, field, ast.Name(name, ast.Load()), "index", cost)
         elif not isinstance(key, ast.Constant | ast.Slice):
             for text, index in beside.items():
@@ -74,6 +78,15 @@ def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
     if single and shape is not None and len(shape) == 2 and not isinstance(key, ast.Slice):
         column = ast.Tuple([ast.Slice(None, None, None), key], ast.Load())
         yield here.within(node, "slice", column, "transposed", 1.15)
+
+
+def _by_counter(
+    name: str, node: ast.Subscript, scope: Scope, beside: Mapping[str, ast.expr]
+) -> float:
+    """Cost of a counter for a number, less where entries are taken by it in other places."""
+    if name in beside or name in scope.indices.get(text_of(node.value), ()):
+        return _BESIDE
+    return _COUNTED if any(name in one for one in scope.indices.values()) else 1.13
 
 
 def is_of_three(here: Here, other: str) -> bool:
@@ -153,6 +166,14 @@ def _of_key(here: Here, key: ast.Constant, scope: Scope) -> Iterator[ProgramEdit
         if other != own and shape == scope.keys.get(own):
             less = _IDLE if other in scope.idle_keys else cost
             yield here.within(key, "value", other, "name", less)
+
+
+def _with_keys(here: Here, key: ast.Constant, scope: Scope) -> Iterator[ProgramEdit]:
+    """What another key has beside it: ``M["arm"] + M["hand"]`` for ``M["arm"]``."""
+    for other in scope.keys if isinstance(here.node.ctx, ast.Load) else ():
+        if other != key.value:
+            term = ast.Subscript(here.node.value, ast.Constant(other), ast.Load())
+            yield here.instead(ast.BinOp(here.node, ast.Add(), term), "missing term", 1.14)
 
 
 def keys_of(node: ast.Subscript) -> list[tuple[Any, Any, ast.expr]]:
