@@ -228,6 +228,10 @@ class Tolerances:
     solved_angle: float = 1e-7
     """rad. Slack of an angle that is solved for from exact poses."""
 
+    still: float = 1e-9
+    """How far a joint moves at most over poses in which it does not move, rad or m."""
+    last_digit: float = 1e-6
+    """Share of a size below which two numbers of a body differ in their last digits alone."""
     same_body: float = 1e-8
     """Relative difference of masses, centres and tensors that is still rounding of their moving
     from one frame to another."""

@@ -151,3 +151,52 @@ def test_it_is_said_which_frames_the_links_have():
 def test_bad_options_exit_with_2():
     assert run("planar2r", "--samples", 0).exit_code == 2
     assert run("planar2r", "--seed", -1).exit_code == 2
+
+
+OTHERWISE = """
+import numpy as np
+import kinlab as kl
+
+l1, l2, e = 0.3, 0.5, 0.2/np.sqrt(2)
+
+@kl.hand_formula("fivebar_angles", robot="isotropic")
+def angles(xy, mode):
+    out = []
+    for side, sign in zip((e, -e), mode):
+        d = xy - np.array([side, 0.0])
+        r = np.hypot(*d)
+        out.append(np.arctan2(d[1], d[0]) - sign*np.arccos((l1**2 + r**2 - l2**2)/(2*l1*r)))
+    return np.array(out)
+
+@kl.hand_formula("potential_energy", robot="planar2r")
+def V(q):
+    return 2.0*9.81*0.5*np.sin(q[0]) + 1.5*9.81*(0.5*np.sin(q[0]) + 0.4*np.sin(q[0] + q[1])) + 7
+"""
+
+
+def test_a_program_that_is_right_otherwise_is_not_wrong(tmp_path):
+    """An angle a whole turn off and a potential with another zero, as `diagnose` has them."""
+    file = tmp_path / "otherwise.py"
+    file.write_text(OTHERWISE)
+    result = run(file)
+    assert result.exit_code == 0, result.output
+    assert "2 right but written otherwise" in result.output and "WRONG" not in result.output
+    assert "another zero" in result.output and "it is the same angle" in result.output
+    wrong = tmp_path / "wrong.py"
+    wrong.write_text(OTHERWISE.replace("- sign*", "+ sign*").replace("+ 7", "+ q[0]"))
+    result = run(wrong)
+    assert result.exit_code == 1 and "2 WRONG" in result.output
+    assert "line 13, the sign is wrong" in result.output
+
+
+def test_an_inverse_kinematics_without_any_solution_costs_itself_alone(tmp_path):
+    file = tmp_path / "none.py"
+    file.write_text(
+        "import numpy as np\nimport kinlab as kl\n\n"
+        '@kl.hand_formula("inverse_kinematics_xy", robot="planar2r")\n'
+        "def ik(x, y):\n    return np.zeros((0, 2))\n\n"
+        '@kl.hand_formula("planar_angle", robot="planar2r")\n'
+        "def phi(q):\n    return q[0] + q[1]\n"
+    )
+    result = run(file)
+    assert result.exit_code == 1 and "1 agree" in result.output and "1 WRONG" in result.output

@@ -117,7 +117,7 @@ def test_an_answer_of_the_wrong_shape_is_explained_or_refused(tmp_path):
     assert refused.exit_code == 1 and "answered with shape" in str(refused.exception)
 
 
-def test_a_five_bar_gets_the_plain_comparison(tmp_path):
+def test_a_five_bar_gets_its_diagnosis_too(tmp_path):
     from kinlab.check.catalogue import catalogue, plan
     from kinlab.check.quantities.registry import quantity
     from kinlab.check.quantities.serial import SERIAL
@@ -132,9 +132,9 @@ def test_a_five_bar_gets_the_plain_comparison(tmp_path):
     file = write(tmp_path, "f.py", text)
     result = run(file, "--samples", 5)
     assert result.exit_code == 1, result.exception
-    assert "DIFFERS" in result.output and "diagnosis" not in result.output
+    assert "DIFFERS" in result.output and "no known slip explains it" in result.output
     rows = json.loads(run(file, "--samples", 5, "--json").output)["rows"]
-    assert rows[0]["diagnosis"] is None
+    assert not rows[0]["diagnosis"]["ok"]
 
 
 def test_json_of_a_formula_file(tmp_path):

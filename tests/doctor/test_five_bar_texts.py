@@ -6,6 +6,7 @@ judged again.
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 import kinlab as kl
@@ -295,3 +296,70 @@ def test_numbers_for_names_hide_no_two_signs(entry, text) -> None:
     """For another five-bar it is wrong; what undoes nothing, a sign twice, is no slip of it."""
     found = kl.diagnose("isotropic", entry, text)
     assert found.agrees, str(found)
+
+
+LOOP = "(x - e - l1*cos(theta1))^2 + (y - l1*sin(theta1))^2 - l2^2"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"-({LOOP})",
+        f"2*({LOOP})",
+        f"({LOOP})/l2^2",
+        "((x - e - l1*cos(theta1))/l2)^2 + ((y - l1*sin(theta1))/l2)^2 - 1",
+        "l2 - sqrt((x - e - l1*cos(theta1))^2 + (y - l1*sin(theta1))^2)",
+        "(x - e)*cos(theta1) + y*sin(theta1) - ((x - e)^2 + y^2 + l1^2 - l2^2)/(2*l1)",
+    ],
+)
+def test_the_loop_by_a_constant_or_as_lengths_is_the_same_equation(text) -> None:
+    found = kl.diagnose("isotropic", "loop1", text)
+    assert found.agrees and found.form == "unusual", str(found)
+    wrong = kl.diagnose("isotropic", "loop1", text.replace("- e", "+ e"))
+    assert not wrong.agrees, str(wrong)
+
+
+def test_a_constant_is_one_at_every_five_bar() -> None:
+    """l1 for l2 is no constant, though both are equal here."""
+    found = kl.diagnose("equal_links", "loop1", f"2*({LOOP.replace('l2', 'l1')})")
+    assert not found.agrees, str(found)
+
+
+ONE_MODE = """A = 2*l1*(e - x)
+B = -2*l1*y
+C = l2^2 - l1^2 - (x - e)^2 - y^2
+theta1 = 2*atan((B {sign} sqrt(A^2 + B^2 - C^2))/(A + C))
+ux = cos(theta1)
+uy = sin(theta1)
+wx = (x - e - l1*ux)/l2
+wy = (y - l1*uy)/l2
+thetad1 = (vx*wx + vy*wy)/(l1*(ux*wy - uy*wx))"""
+
+
+@pytest.mark.parametrize(("sign", "mode"), [("-", "(-1,"), ("+", "(+1,")])
+def test_what_works_the_angle_out_by_itself_is_right_in_its_working_mode(sign, mode) -> None:
+    text = ONE_MODE.format(sign=sign)
+    found = kl.diagnose("isotropic", "fivebar_rates[0]", text)
+    assert found.agrees and mode in found.remarks[0], str(found)
+    angle = "\n".join(text.splitlines()[:4])
+    assert kl.diagnose("isotropic", "fivebar_angles[0]", angle).agrees
+
+
+def test_a_slip_in_one_working_mode_is_told() -> None:
+    wrong = ONE_MODE.format(sign="-").replace("ux*wy - uy*wx", "ux*wy + uy*wx")
+    found = kl.diagnose("isotropic", "fivebar_rates[0]", wrong)
+    assert found.causes[0].kinds == ("sign",) and "uy*wx" in found.sentence, str(found)
+
+
+def test_the_e_of_a_number_is_no_name() -> None:
+    found = kl.diagnose("isotropic", "loop1", f"{LOOP} + 1e-4")
+    assert found.sentence == "loop1: the term 1e-4 does not belong there (extra term)"
+
+
+def test_one_coefficient_is_judged_alike_as_a_function_and_as_text() -> None:
+    def half(xy):
+        return 0.3 * (0.2 / np.sqrt(2) - xy[0])
+
+    function = kl.diagnose("isotropic", "fivebar_equation[0,0]", half)
+    text = kl.diagnose("isotropic", "A1", "l1*(e - x)")
+    assert function.agrees and text.agrees and function.remarks == text.remarks

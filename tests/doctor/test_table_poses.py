@@ -148,3 +148,36 @@ def test_bad_arrays_are_refused():
         with pytest.raises(kl.KinlabError) as caught:
             kl.diagnose_table(PUMA, poses=bad)
         assert said in str(caught.value)
+
+
+def test_poses_at_one_q_are_refused():
+    q, T = measured(PUMA, 5)
+    with pytest.raises(kl.KinlabError, match="all are at one q"):
+        kl.diagnose_table(PUMA, poses=(np.tile(q[:1], (5, 1)), np.tile(T[:1], (5, 1, 1))))
+
+
+def test_of_joints_at_rest_nothing_is_said_for_sure():
+    """Two lengths that make up for each other while nothing between them turns."""
+    q, _ = measured(PUMA, 8)
+    q[:, 1:] = 0.0
+    rows = list(PUMA.links)
+    rows[1], rows[2] = replace(rows[1], a=rows[1].a + 0.2), replace(rows[2], a=rows[2].a - 0.2)
+    other = replace(PUMA, links=tuple(rows))
+    found = kl.diagnose_table(other, poses=(q, PUMA.fk(q)[:, -1]))
+    assert "other tables would as well" in found.sentence and not found.certain_rows
+    assert any("joints 2, 3, 4, 5 and 6 do not move" in note for note in found.notes)
+
+
+def test_rows_away_from_the_joint_at_rest_are_sure():
+    q, _ = measured(PUMA, 8)
+    q[:, 5] = 0.3
+    found = kl.diagnose_table(PUMA, poses=(q, PUMA.fk(q)[:, -1]))
+    assert found.agrees and found.certain_rows == (1, 2, 3, 4)
+
+
+def test_poses_in_millimetres_may_be_what_is_wrong():
+    q, T = measured(PUMA, 6)
+    T = T.copy()
+    T[:, :3, 3] *= 1000.0
+    found = kl.diagnose_table(PUMA, poses=(q, T))
+    assert not found.agrees and any("another unit" in note for note in found.notes)

@@ -197,3 +197,43 @@ def test_where_a_number_may_have_a_unit_none_is_refused(model):
         "questions": [{"id": "b", "text": "t", "answer": model}],
     }
     assert kl.mark(sheet, {"ada": {"b": "23.0535 N m"}})["ada"]["b"].right
+
+
+WHOLE = {
+    "M": "[[(m1+m2)*l1^2 + m2*l2^2 + 2*m2*l1*l2*c2, m2*l2^2 + m2*l1*l2*c2]]",
+    "J": "[[-l1*s1 - l2*s12, -l2*s12], [l1*c1 + l2*c12, l2*c12]]",
+}
+
+
+@pytest.mark.parametrize("entry", WHOLE)
+def test_what_is_wrong_and_lacks_entries_has_no_more_than_what_is_right_and_lacks_them(entry):
+    sheet = {
+        "title": "t",
+        "robot": "planar2r",
+        "slips": {"sign": 0.25},
+        "questions": [{"id": "a", "entry": entry, "points": 4}],
+    }
+    right = WHOLE[entry]
+    answers = {
+        "ada": {"a": right},
+        "bob": {"a": right.replace("+ 2*", "- 2*").replace("c1 +", "c1 -")},
+    }
+    marks = kl.mark(sheet, answers)
+    ada, bob = marks["ada"]["a"], marks["bob"]["a"]
+    assert ada.points == bob.points == 0.0
+    assert ada.kinds == ("missing entries",) and bob.kinds == ("sign", "missing entries")
+    assert "not given" in ada.place and "look at" in bob.place
+
+
+def test_every_entry_that_is_wrong_costs_something():
+    sheet = {
+        "title": "t",
+        "robot": "isotropic",
+        "slips": {"sign": 0.25, "other": 0.25},
+        "questions": [{"id": "a", "entry": "fivebar_jacobian", "points": 4}],
+    }
+    right = {f"J{i}{k}": f"w{i}{x}/(l1*uHw{i})" for i in (1, 2) for k, x in ((1, "x"), (2, "y"))}
+    assert kl.mark(sheet, {"ada": {"a": right}})["ada"]["a"].points == 4
+    wrong = {**right, "J11": f"-{right['J11']}", "J22": f"-{right['J22']}"}
+    found = kl.mark(sheet, {"bob": {"a": wrong}})["bob"]["a"]
+    assert found.points == 2 and found.kinds == ("sign", "sign"), found

@@ -150,11 +150,17 @@ def _engines(case: Case) -> Iterator[Confusion]:
         yield _other("one number", said, otherwise.summed_with_rates, 1.1)
 
 
+_PLANAR = 3
+"""Rows of a Jacobian in the plane: vx, vy, wz."""
+
+
 def _answers(case: Case) -> Iterator[Confusion]:
     name = case.quantity.name
     shape = case.engine(case.robot, {k: v[:1] for k, v in case.arguments.items()}).shape[1:]
     if name in _FRAMES or name == "jacobian_dot":
         yield _answer("row order", _("has the angular rows first"), lambda x: np.roll(x, 3, axis=1))
+    if name == "planar_jacobian" and len(shape) == 2 and shape[0] == _PLANAR:
+        yield _answer("row order", _("has the angular row first"), lambda x: np.roll(x, 1, axis=1))
     if name == "fk":
         said = _("is the inverse transform (the base in the tool)")
         yield _answer("inverse", said, _inverse)

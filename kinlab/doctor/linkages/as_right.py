@@ -23,6 +23,7 @@ from kinlab.doctor.changes import Case
 from kinlab.doctor.linkages.five_bar import is_either
 from kinlab.doctor.linkages.looked_up import looked_up
 from kinlab.fivebar import FiveBar
+from kinlab.formulas import tree
 from kinlab.formulas.text import words_in
 from kinlab.host.language import _
 from kinlab.tolerances import TOLERANCES
@@ -43,6 +44,8 @@ _SIDES = {"1": (1.0, 0), "-1": (-1.0, 0)}
 """The same of the loop's equation, by the side on which it stands."""
 _BRANCHED = {"sqrt", "acos", "arccos"}
 """Functions with which a crank's angle is on one of two branches."""
+_GIVEN = ("x", "y", "vx", "vy", "ax", "ay")
+"""What is the same in every working mode."""
 _MODES, _MODE = ((-1, 1), (1, 1), (-1, -1), (1, -1)), "({:+d}, {:+d})"
 _POWERS = ((0, 0), (-1, 0), (0, -1), (-2, 0), (0, -2), (-1, -1), (1, 0), (0, 1))
 """Powers of l1 and l2 by which the loop's equation may be multiplied."""
@@ -138,8 +141,11 @@ def _of_one_mode(case: Case, hand: Array, text: Written) -> list[AsRight]:
     The working mode that its answers are nearest to.
     """
     typed = {name for one in (text.text, *text.symbols.values()) for name in words_in(one)}
-    if typed.isdisjoint(_BRANCHED):
+    known = looked_up(case)
+    if typed.isdisjoint(_BRANCHED) or known is None:
         return []
+    if not tree.names(text.node) <= {*_GIVEN, *known.parameters}:
+        return []  # J11 and w1x are those of the mode that is asked for
     every = [AsRight(_in_mode(case, signs), _MODE.format(*signs)) for signs in _MODES]
     every.sort(key=lambda way: _typical(way, hand))
     other = [x for x in every[1:] if not np.allclose(x.answers, every[0].answers)]

@@ -70,6 +70,10 @@ class Bodies:
         )
 
 
+ROUNDING = "rounding"
+"""The kind of what differs in its last digits."""
+
+
 def differences(table: DHTable, bodies: Bodies) -> tuple[DHTable, list[Cause]]:
     """Compares a table's bodies with a reference's, kinematics being the same.
 
@@ -78,7 +82,8 @@ def differences(table: DHTable, bodies: Bodies) -> tuple[DHTable, list[Cause]]:
         bodies: of the reference.
 
     Returns:
-        The table with the bodies of the reference, and one cause for each cell that differs.
+        The table with the bodies of the reference, and one cause for each cell that differs; what
+        differs in the last digits alone is of the kind :data:`ROUNDING`.
     """
     mine = Bodies.of(table)
     poses = frames(Chain.of(table), np.zeros((1, table.n)))[0]
@@ -98,7 +103,10 @@ def differences(table: DHTable, bodies: Bodies) -> tuple[DHTable, list[Cause]]:
             causes.append(mass_cause(one))
             changes["mass"] = one.mass
         near = slack * (table.n + 1) * size
-        if one.mass > 0.0 and np.max(np.abs(com - np.asarray(link.com))) > 1e-9 * size + near:
+        off = float(np.max(np.abs(com - np.asarray(link.com))))
+        if one.mass > 0.0 and off > 1e-9 * size + near and off <= TOLERANCES.last_digit * size:
+            causes.append(_rounding(i + 1, "com", off))
+        elif one.mass > 0.0 and off > 1e-9 * size + near:
             clean = _tidy(com)
             causes.append(com_cause(replace(one, com=clean, slack=near)))
             changes["com"] = clean
@@ -107,7 +115,10 @@ def differences(table: DHTable, bodies: Bodies) -> tuple[DHTable, list[Cause]]:
             + 1e-14
             + 1e-10 * float(np.max(np.abs(link.inertia)))
         )
-        if np.max(np.abs(one.inertia - np.asarray(link.inertia))) > limit:
+        off = float(np.max(np.abs(one.inertia - np.asarray(link.inertia))))
+        if limit < off <= TOLERANCES.last_digit * float(np.max(np.abs(inertia))):
+            causes.append(_rounding(i + 1, "inertia", off))
+        elif off > limit:
             clean = _tidy(one.inertia)
             causes.append(inertia_cause(replace(one, inertia=clean, slack=limit if slack else 0.0)))
             changes["inertia"] = clean
@@ -125,6 +136,12 @@ def differences(table: DHTable, bodies: Bodies) -> tuple[DHTable, list[Cause]]:
             causes.append(gravity_cause(mine.gravity, bodies.gravity, poses))
             repaired = replace(repaired, gravity=bodies.gravity)
     return repaired, _together(causes, table.n)
+
+
+def _rounding(row: int, column: str, off: float) -> Cause:
+    said = _("row {row}: {column} agrees to six digits: {off:.1e} apart")
+    told = said.format(row=row, column=column, off=off)
+    return Cause(row, column, None, None, ROUNDING, told, 0.0, told)
 
 
 def _tidy(values: Array) -> Array:

@@ -84,6 +84,8 @@ def diagnose_table(
         reference = read_reference(against, table, tool=tool, seed=seed)
     notes = [*reference.notes, *check_joints(table, reference)]
     wanted = _compares_bodies(table, reference, dynamics, notes)
+    if wanted and any(x.viscous_friction or x.coulomb_friction for x in table.links):
+        notes.append(_("friction is not compared"))
     return _judge(table, reference, wanted, notes)
 
 
@@ -155,17 +157,19 @@ def _told(
     chain = Chain.of(table)
     common = reference.facts(table, before, notes)
     if not found:
-        sure = table_zeros.sure_rows(chain, reference)
+        unseen = _unseen(chain, reference)
+        sure = tuple(i for i in table_zeros.sure_rows(chain, reference) if i not in unseen)
         doubt = tuple(i for i in range(1, table.n + 1) if i not in sure)
         rows_: dict[str, Any] = {"certain_rows": sure, "rows_in_question": doubt}
         said = _unknown(sure, doubt, reference)
         return TableDiagnosis(agrees=False, sentence=said, **rows_, **common)
     options = _with_bodies(table, reference, found, bodies)
-    if len(found[0].causes) == 1 and len(options[0][2]) > 1 and table.n == reference.n:
-        # bodies that are wrong in many rows speak against the one kinematic slip
+    if len(found[0].causes) == 1 and options[0][2] and table.n == reference.n:
+        # bodies that are wrong, too, speak against the one kinematic slip
         more = _explained(chain, reference, (2,))
         options = _with_bodies(table, reference, [*found, *more], bodies)
-    repaired, causes, dynamic = options[0]
+    repaired, causes, dynamic, rounded = options[0]
+    common["notes"] = (*common["notes"], *rounded)
     if len(dynamic) > MOST or (len(causes) > MOST and not many):
         rows = sorted({row for cause in dynamic for row in cause.rows})
         kinematic = tuple(c for c in causes if c not in dynamic)
@@ -189,9 +193,24 @@ def _told(
     differences = _frames_told(causes, chain)
     wrong = {row for cause in causes for row in cause.rows}
     whole = any(c.row is None and c.column in ("convention", "units", "order") for c in causes)
-    rest = tuple(i for i in range(1, repaired.n + 1) if i not in wrong and not whole)
+    unseen = _unseen(chain, reference)
+    maybe = unseen.union(*(cause.rows for option in options for cause in option[1]))
+    rest = tuple(i for i in range(1, repaired.n + 1) if i not in maybe and not whole)
     told = joined(causes)
-    if not causes:
+    if unseen:
+        still = ngettext(
+            "joint {joints} does not move in the poses: of rows {rows} they say nothing for sure",
+            "joints {joints} do not move in the poses: of rows {rows} they say nothing for sure",
+            len(reference.still),
+        ).format(joints=listed(reference.still), rows=listed(sorted(unseen)))
+        common["notes"] = (*common["notes"], still)
+    if reference.axes is None and any(cause.column == "units" for cause in causes):
+        units = _("it may as well be the poses that are in another unit than metres")
+        common["notes"] = (*common["notes"], units)
+    if not causes and unseen:
+        told = _("{table} gives {reference} at these q, and other tables would as well")
+        told = told.format(table=table.name, reference=reference.name)
+    elif not causes:
         told = _("{table} and {reference} are the same arm")
         told = told.format(table=table.name, reference=reference.name)
         if reference.chain is not None:
@@ -211,7 +230,16 @@ def _told(
     )
 
 
-_Option = tuple[DHTable, tuple[Cause, ...], list[Cause]]
+def _unseen(chain: Chain, reference: Reference) -> set[int]:
+    """The rows that poses tell nothing for sure of: those around the axes of joints at rest."""
+    if reference.axes is not None:
+        return set()
+    around = (0, 1) if chain.modified else (-1, 0)
+    rows = {joint + k for joint in reference.still for k in around}
+    return {row for row in rows if 1 <= row <= chain.n}
+
+
+_Option = tuple[DHTable, tuple[Cause, ...], list[Cause], list[str]]
 
 
 def _with_bodies(
@@ -231,12 +259,15 @@ def _with_bodies(
             warnings.simplefilter("ignore", KinlabWarning)
             repaired = one.chain.apply(table)
         dynamic: list[Cause] = []
+        rounded: list[str] = []
         if bodies and reference.bodies is not None and repaired.n == reference.n:
             repaired, dynamic = table_bodies.differences(repaired, reference.bodies)
             new = {i + 1 for i, origin in enumerate(one.chain.source) if origin is None}
             dynamic = [c for c in dynamic if not c.rows or not set(c.rows) <= new]
+            rounded = [c.sentence for c in dynamic if c.kind == table_bodies.ROUNDING]
+            dynamic = [c for c in dynamic if c.kind != table_bodies.ROUNDING]
         rank = (len(dynamic), _foreign(one.chain, reference), place)
-        options.append((rank, (repaired, (*one.causes, *dynamic), dynamic)))
+        options.append((rank, (repaired, (*one.causes, *dynamic), dynamic, rounded)))
     options.sort(key=lambda option: option[0])
     least = options[0][0][0]
     return [option for rank, option in options if rank[0] == least]

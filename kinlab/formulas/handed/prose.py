@@ -214,7 +214,7 @@ def moment_elsewhere(text: str) -> str:
 def of_another_part(text: str, entry: str) -> str:
     """What says first that it is of another joint: ``torque of the first joint`` of tau2."""
     plain, own = flat(text), {*re.findall(r"\d", _counted_from_1(entry))}
-    begins = _SUBJECT.match(plain)
+    begins = None if "=" in plain else _SUBJECT.match(plain)  # tau2 = ... says what it is
     found = _PART.match(plain, begins.end()) if begins and own else None
     number = _number_of(found) if found else ""
     return plain[: found.end()].strip()[:_MOST] if found and number and number not in own else ""

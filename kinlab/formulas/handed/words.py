@@ -40,7 +40,7 @@ _OTHERWISE = re.compile(
     r"|(?:相差|差|除了|除)一?个?(?:正负|负)?(?:符号|号|系数|因子)|符号相反|单位质量|单位长度"
     r"|(?:单位[:：为是]*|以)(?:度|毫米|厘米)"
     r"|\b(?:rpm|rev/min|u/min|(?:revolutions?|rotations?|turns?)\s+per|umdrehung\w*)\b|转每分|每分钟|转/分"
-    r"|\b(?:approximat\w*|näherung\w*|genähert\w*|missing|forg[eo]t(?:ten)?|fehl(?:t|en))\b|近似|缺少|漏掉"
+    r"|\b(?:approximat\w*|näherung\w*|genähert\w*|missing|forgot(?:ten)?|fehl(?:t|en))\b|近似|缺少|漏掉"
     r"|(?<!counter)(?<!counter[ -])(?<!anti)(?<!anti[ -])\bclockwise\b"
     r"|\bim\s+uhrzeigersinn\b|顺时针",
     re.IGNORECASE,

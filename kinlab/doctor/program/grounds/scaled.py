@@ -125,12 +125,27 @@ class ProgramNumber:
         return self.place, self.place.value / factor if self.below else factor * self.place.value
 
 
-def other_arm(
+def parallel_arm(
     robot: Robot, trial: Trial, observed: Observed, masses: bool = True
+) -> OtherArm | None:
+    """As :func:`other_arm`, of an arm whose axes are all parallel one whose axes are, too.
+
+    A program may count on it, and turn by sums of angles. None of other arms.
+    """
+    table = table_of(robot)
+    twists = [] if table is None else [link.alpha for link in table.links if link.alpha]
+    if not twists or not all(math.isclose(abs(x), math.pi) for x in twists):
+        return None
+    return other_arm(robot, trial, observed, masses, twist=False)
+
+
+def other_arm(
+    robot: Robot, trial: Trial, observed: Observed, masses: bool = True, *, twist: bool = True
 ) -> OtherArm | None:
     """An arm with longer and heavier links, and other twists where the program's numbers hold them.
 
-    Where no ``masses`` are asked for, what may be a length is none.
+    Where no ``masses`` are asked for, what may be a length is none; without ``twist`` the twists
+    stay as they are.
 
     None of a robot without a table, and where no number of the program is the arm's.
     """
@@ -138,7 +153,7 @@ def other_arm(
     if table is None:
         return None
     found = [*numbers_of(trial, observed)]
-    twisted = twisted_by(table, found)
+    twisted = twisted_by(table, found) if twist else 1.0
     kinds = _kinds(robot, table, twisted)
     may = [_meant(kinds, one.value) for one in found]
     if not masses:
@@ -271,13 +286,8 @@ def holds_an_arm(trial: Trial) -> bool:
 
 
 def twisted_by(table: DHTable, found: Sequence[ProgramNumber]) -> float:
-    """How many times as large twists are, where the program's numbers hold them.
-
-    Where all axes are parallel a program may count on it, and turn by sums of angles.
-    """
+    """How many times as large twists are, where the program's numbers hold them."""
     twists = [link.alpha for link in table.links if link.alpha]
-    if all(math.isclose(abs(x), math.pi) for x in twists):
-        return 1.0
     held = np.array([one.value for one in found if one.alone and one.used])
     turned = bool(twists) and all(_among(x, held) for x in twists) and not _shared(table, held)
     return _TWISTED if turned else 1.0

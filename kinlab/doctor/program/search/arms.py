@@ -10,7 +10,13 @@ import numpy as np
 
 from kinlab.doctor.bytecode.syntax import called, nodes
 from kinlab.doctor.program.grounds.apart import arm_apart
-from kinlab.doctor.program.grounds.scaled import OtherArm, is_free, is_own, other_arm
+from kinlab.doctor.program.grounds.scaled import (
+    OtherArm,
+    is_free,
+    is_own,
+    other_arm,
+    parallel_arm,
+)
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ROUNDING, ProgramEdit, changed
 from kinlab.doctor.program.search.asked import Asked
@@ -46,7 +52,7 @@ def other_arms_of(asked: Asked, observed: Observed, work: Work) -> OtherArms:
     """The other arms for which a program may be right, as it is."""
     every = (node for tree in asked.trial.trees for node in nodes(tree))
     whole = frozenset(id(node) for node in every if type(getattr(node, "value", None)) is int)
-    return OtherArms(asked, observed, work, _arms(asked, observed), whole, {})
+    return OtherArms(asked, observed, work, _arms(asked, observed), whole, {}, {})
 
 
 @dataclass(frozen=True)
@@ -60,6 +66,7 @@ class OtherArms:
         before: the arms for the program as it was.
         whole: which of its nodes were whole numbers, by their identities.
         there: what is right of them, as far as it was asked for.
+        kept: an arm with parallel axes, once it was asked for.
     """
 
     asked: Asked
@@ -68,6 +75,7 @@ class OtherArms:
     before: Pair
     whole: frozenset[int]
     there: dict[OtherArm, Asked | None]
+    kept: dict[str, OtherArm | None]
 
     def of(self, several: tuple[ProgramEdit, ...]) -> Pair:
         """The other arms for the program as it stands now, with these edits in it."""
@@ -100,6 +108,16 @@ class OtherArms:
         with quietly(), changed(self.asked.trial, several):
             known = [arm for arm in self.of(several) if arm is not None and arm.whole]
             return any(self.at(arm) is not None and self.hold_for(arm) for arm in known)
+
+    def holds_for_parallel_axes(self) -> bool:
+        """Whether the program as it stands now is right for another arm with parallel axes."""
+        case, given = self.asked.case, (self.asked.trial, self.observed)
+        if "parallel" not in self.kept:
+            masses = case.quantity.name not in _KINEMATIC
+            self.kept["parallel"] = parallel_arm(case.robot, *given, masses)
+        other = self.kept["parallel"]
+        known = other is not None and other.whole and self.at(other) is not None
+        return known and other is not None and self.hold_for(other)
 
     def only_here(self, several: tuple[ProgramEdit, ...]) -> bool:
         """Whether edits hold for this arm alone, where a program that is right holds for others."""

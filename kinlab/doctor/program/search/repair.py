@@ -132,6 +132,7 @@ class LineSearch:
         self.stand: tuple[ProgramEdit, ...] = ()
         self.tried: list[tuple[ProgramEdit, Array]] = []
         self._alone: list[ProgramRepair] | None = None
+        self.parallel: list[ProgramRepair] = []
         self.most, self.thorough = _WORK, True
         self.trial, self.case = Trial(program), case
         self.asked = Asked(self.trial, case, wanted, allowed)
@@ -216,6 +217,7 @@ class LineSearch:
 
     def _singles(self, below: float) -> list[ProgramRepair]:
         found: list[ProgramRepair] = []
+        self.parallel = []
         best, doubted = np.inf, False
         limit = _ALONE if self.thorough else self.most
         with quietly():
@@ -249,6 +251,7 @@ class LineSearch:
                     rough = repair.error > TOLERANCES.formula_agrees
                     best = min(best, self.likely(edit) + _ROUGH * rough)
                     doubted = doubted or self.evidence.coincident(edit)
+            found = found or ([] if self.stand else self.parallel[:1])
             found = self._by_name(self._by_evidence(found))
             if not self.stand:
                 found = in_company(found, self.likely, _SAME, self.trial, _beside)
@@ -479,9 +482,12 @@ class LineSearch:
             error = self.asked.error(range(count))
             if not error <= self.asked.allowed:
                 return None
-        if self.arms.only_here(several):
-            return None
-        return ProgramRepair(several, error, sum(edit.cost for edit in several))
+        repair = ProgramRepair(several, error, sum(edit.cost for edit in several))
+        if not self.arms.only_here(several):
+            return repair
+        if not self.stand and len(several) == 1 and self.arms.holds_for_parallel_axes():
+            self.parallel.append(repair)
+        return None
 
 
 def _add_the_same(one: ProgramEdit, other: ProgramEdit) -> bool:

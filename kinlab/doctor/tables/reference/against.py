@@ -23,6 +23,7 @@ from kinlab.model.dh import DHTable
 from kinlab.model.library import load
 from kinlab.model.robot import Robot
 from kinlab.model.urdf_records import EXTENSION
+from kinlab.tolerances import TOLERANCES
 
 STATES = 40
 """Random states at which an arm that is known as a whole is compared."""
@@ -85,6 +86,12 @@ class Reference:
     def n(self) -> int:
         """Number of joints."""
         return int(self.target.q.shape[1])
+
+    @property
+    def still(self) -> tuple[int, ...]:
+        """The joints that move in none of the poses, counted from 1."""
+        moved = np.ptp(self.target.q, axis=0)
+        return tuple(int(k) + 1 for k in np.flatnonzero(moved <= TOLERANCES.still))
 
     def facts(self, mine: DHTable, before: float, notes: Sequence[str]) -> dict[str, Any]:
         """What every diagnosis of a table says of the comparison; ``before``: its error."""
@@ -222,6 +229,8 @@ def of_poses(q: ArrayLike, T: ArrayLike, name: str = "") -> Reference:
         )
     if len(states) < 3:
         raise StateError(f"poses: {len(states)} of them; give three or more, at differing q")
+    if states.shape[1] and np.all(np.ptp(states, axis=0) <= TOLERANCES.still):
+        raise StateError("poses: all are at one q; give three or more, at differing q")
     rotation = poses[:, :3, :3]
     off = np.max(np.abs(np.swapaxes(rotation, -1, -2) @ rotation - np.eye(3)), axis=(1, 2))
     last = np.abs(poses[:, 3] - (0.0, 0.0, 0.0, 1.0)).max(axis=1)
