@@ -13,10 +13,12 @@ import random
 import re
 import tokenize
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
 import kinlab as kl
+from kinlab.check.diagnosis import Cause
 from kinlab.doctor.changes import Case
 from kinlab.doctor.examine import prepare
 from kinlab.doctor.program.read import read
@@ -668,3 +670,27 @@ def asked(text, robot, quantity, file=None):
         values = np.array([after["f"](*map(np.copy, state)) for state in states])
         good |= bool(np.allclose(values, engine, rtol=1e-9, atol=1e-9))
     return found, good
+
+
+def told_in_its_line(
+    robot: str, quantity: str, text: str, right: str, slip: str, file: Path | None = None
+) -> Cause:
+    """The only cause that is told of a program with a slip: in its line, and what is said makes
+    the program right.
+
+    Args:
+        robot, quantity, text: a right program.
+        right, slip: what stands there, and what instead.
+        file: where the program is written to, if its lines outside of functions are read, too.
+    """
+    wrong = with_slips(text, [(right, slip)])
+    if file is not None:
+        file.write_text(wrong)
+    found = kl.diagnose(robot, quantity, written(wrong, *([] if file is None else [file])))
+    assert not found.agrees and len(found.causes) == 1, found
+    (cause,) = found.causes
+    line = wrong[: wrong.index(slip)].count("\n") + 1
+    assert f"line {line}" in " ".join(cause.places) and len(cause.kinds) == 1, found
+    others = [*repaired(wrong, cause.sentence)]
+    assert any(kl.diagnose(robot, quantity, one["f"]).agrees for one in others), cause.sentence
+    return cause

@@ -751,7 +751,7 @@ def _equations(text: str) -> list[str]:
     found = []
     for line in lines:
         first, *behind = [part.strip("& ") for piece in line for part in _WHERE.split(piece)]
-        found += [*behind, first]
+        found += [one.rstrip(": ") for one in (*behind, first)]
     return [line for line in found if line]
 
 

@@ -233,3 +233,62 @@ def test_friction_that_is_not_neglected_is_never_passed_over(words) -> None:
         assert "friction" in str(problem)
     else:
         assert found.remarks, found
+
+
+X = "x = l1*c1 + l2*c12"
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "where l2 is the length of the first link and l1 that of the second",
+        "where l1 and l2 are the lengths of the second and first link",
+        "wobei l1 die Länge des zweiten Glieds und l2 die des ersten ist",
+        "but with the opposite sign",
+        "the last term must be dropped",
+        "which is only an approximation for small angles",
+        "hier fehlt noch ein Term",
+        "where theta2 is counted clockwise",
+        "单位 cm",
+        "the correct result is different",
+    ],
+)
+def test_what_denies_a_right_formula_is_refused(words) -> None:
+    with pytest.raises(ExpressionError):
+        kl.diagnose("planar2r", "x", f"{X}, {words}")
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "where l1 is the length of the first link and l2 that of the second",
+        "where l1 and l2 are the lengths of the first and the second link",
+        "angles positive counter-clockwise",
+    ],
+)
+def test_what_only_sounds_so_is_not(words) -> None:
+    assert kl.diagnose("planar2r", "x", f"{X}, {words}").agrees
+    assert kl.diagnose("planar2r", "x", f"Don't forget the second link: {X}").agrees
+
+
+def test_a_text_that_begins_with_another_joint_is_not_of_this_one() -> None:
+    tau2 = "m2*l2^2*(qdd1 + qdd2) + m2*l1*l2*c2*qdd1 + m2*l1*l2*s2*qd1^2 + m2*g*l2*c12"
+    assert kl.diagnose("planar2r", "tau2", f"Torque of the second joint: {tau2}").agrees
+    with pytest.raises(ExpressionError, match="FIRST joint"):
+        kl.diagnose("planar2r", "tau2", f"Torque of the FIRST joint: {tau2}")
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "text"),
+    [
+        ("planar2r", "y", "y-Koordinate:\ny = l1*s1 + l2*s12"),
+        ("planar2r", "planar_position_determinant", "Singular where it vanishes:\n$l_1 l_2 \\sin(\\theta_2)$"),
+        ("planar2r", "x", f"the tool (units: m)\n{X}"),
+        ("planar2r_rods", "M22", "lc2 is the distance to the centre, lc2 = l2/2:\nM22 = I2 + m2*lc2^2"),
+        ("planar2r", "phi", "atan2(s12, c12)"),
+        ("planar2r", "phi", "2*atan(s12/(1 + c12))"),
+    ],
+)  # fmt: skip
+def test_headings_and_other_forms_are_read(robot, entry, text) -> None:
+    found = kl.diagnose(robot, entry, text)
+    assert found.agrees and not any("holds only" in one for one in found.remarks), str(found)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hand_programs import repaired, with_slips, written
+from hand_programs import told_in_its_line, written
 
 import kinlab as kl
 from kinlab.doctor.examine import prepare
@@ -258,17 +258,8 @@ def test_every_program_is_right(name):
     ],
 )  # fmt: skip
 def test_a_slip_in_it_is_told(name, right, slip, kind, tmp_path):
-    robot, quantity, text = PROGRAMS[name]
-    wrong = with_slips(text, [(right, slip)])
-    (tmp_path / "own.py").write_text(wrong)  # lines outside of functions are read from the file
-    found = kl.diagnose(robot, quantity, written(wrong, tmp_path / "own.py"))
-    assert not found.agrees and len(found.causes) == 1, found
-    (cause,) = found.causes
-    line = wrong[: wrong.index(slip)].count("\n") + 1
-    assert f"line {line}" in " ".join(cause.places) and len(cause.kinds) == 1, found
-    assert not kind or cause.kinds[0] == kind or "sign" in cause.kinds[0], found
-    others = [*repaired(wrong, cause.sentence)]
-    assert any(kl.diagnose(robot, quantity, one["f"]).agrees for one in others), cause.sentence
+    cause = told_in_its_line(*PROGRAMS[name], right, slip, tmp_path / "own.py")
+    assert not kind or cause.kinds[0] == kind or "sign" in cause.kinds[0], cause
 
 
 @pytest.mark.parametrize("name", ["articulated", "records", "turns", "screws"])

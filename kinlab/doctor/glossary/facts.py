@@ -91,10 +91,12 @@ def _is_of_joint_one(claim: Claim) -> bool | None:
 
 
 def _is_own(claim: Claim) -> bool | None:
-    """Whether the numbers in it are those of its names: m2 of link 2."""
-    own = {int(found) for name in claim.names for found in re.findall(r"\d", name)}
-    told = {number for _kind, number in claim.refs}
-    return told <= own if own or not told else None
+    """Whether the numbers in it are those of its names: m2 of link 2; of several one by one."""
+    own = [int(found) for name in claim.names for found in re.findall(r"\d", name)]
+    told = [number for _kind, number in claim.refs]
+    if len(told) > 1 and len(told) == len(own) == len(claim.names):
+        return told == own
+    return {*told} <= {*own} if own or not told else None
 
 
 @dataclass(frozen=True, eq=False)

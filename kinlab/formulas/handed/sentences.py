@@ -36,10 +36,11 @@ _COMMENT = re.compile(r"(?<!\\)(?<![\d ] )(?:^|(?<=[\s;]))%[^\n=]*$", re.MULTILI
 """A comment of LaTeX's or MATLAB's, without an equation in it."""
 _ABOUT = re.compile(
     rf"(?<![\w*/^+=-])[xyz]-(?=(?:coordinate|component|position|koordinate|komponente)[{LATIN}]*)"
-    r"|\(\s*units?\s*:\s*[A-Za-z/^0-9 ]{1,12}\)",
+    r"|\(\s*units?\s*:\s*[A-Za-z/^0-9 ]{1,12}\)"
+    rf"|(?<=[\w)}}\]])\s\((?:[{LATIN}]{{2,20}}[ ,]{{1,2}}){{2,8}}[{LATIN}]{{2,20}}\)",
     re.IGNORECASE,
 )
-"""Letters that are part of a word, and a unit in parentheses."""
+"""Letters that are part of a word, a unit in parentheses, and words in parentheses."""
 _OPERATOR = re.compile(r"[*/^+=<>]|\\(?:sin|cos|tan|d?frac|sqrt)(?![A-Za-z])")
 _UNIT = re.compile(r"\s*(?:(?:SI|the|units?|of)\s+)*(?:mm|cm|dm|km|m|kg|N|Nm|J|rad|s|deg)\b")
 _GAP = "\0"

@@ -38,6 +38,8 @@ _UNLIKE = 0.15
 """What it costs more to add numbers whose names are those of a mass and of a length."""
 _BESIDE_NOTHING = 0.15
 """What it costs more to add a term beside one like it that is nothing at all."""
+_AS_PARTS = 0.1
+"""What it costs less to turn a part of what is turned elsewhere by the same matrix."""
 _SPOILED = 0.15
 """What an edit costs more that spoils what is right."""
 _SHARED = 0.05
@@ -136,6 +138,9 @@ class Grounds:
         }
         self.agreed = {id(node) for tree in trial.trees for node in self._agreed(tree)}
         self.silent = self._silent()
+        self.parts = {part.name for part in trial.program.parts[1:]}
+        every = (node for tree in trial.trees for node in nodes(tree))
+        self.turned = {_turned_part(node) for node in every} - {None}
         if not known:
             return
         for part, tree in enumerate(trial.trees):
@@ -185,9 +190,17 @@ class Grounds:
         unlike_ = self._adds_unlike(edit.changes[0].new) or self._takes_another_centre(edit)
         more = _UNLIKE if unlike_ or self._spoils_a_number(edit) else 0.0
         more += _BESIDE_NOTHING if self._is_beside_nothing(edit) else 0.0
+        more -= _AS_PARTS if self._is_as_another_part(edit) else 0.0
         more += _AGREED if id(edit.node) in self.agreed else 0.0
         more += _USED * self._where_it_is_used(edit) + _RENAMED * self._turns_a_renamed(edit)
         return more + (_TRUSTED if edit.part in self.trusted else 0.0)
+
+    def _is_as_another_part(self, edit: ProgramEdit) -> bool:
+        """Whether a matrix is put in front of a part of what it stands in front of elsewhere.
+
+        ``R @ wrench[3:]`` beside ``R @ wrench[:3]``.
+        """
+        return edit.kind == "missing matrix" and _turned_part(edit.changes[0].new) in self.turned
 
     def _is_beside_nothing(self, edit: ProgramEdit) -> bool:
         """Whether a term is added beside one like it that is nothing: rather that one is wrong.
@@ -289,6 +302,12 @@ class Grounds:
         node, holder = edit.node, edit.changes[0].holder
         if edit.kind not in _OF_THE_WHOLE:
             return False
+        if edit.kind in _WHOLLY and isinstance(node, ast.Call) and called(node) in self.parts:
+            return True  # half of what a function of the program's gives
+        if edit.kind == "transposed" and isinstance(node, ast.BinOp):
+            return isinstance(node.op, ast.Mult) and any(
+                self._is_once(edit.part, side) for side in (node.left, node.right)
+            )
         if edit.kind == "sign" and isinstance(node, ast.BinOp):
             if isinstance(node.op, ast.MatMult):  # ``R @ v`` of a vector that is used once
                 return self._is_once(edit.part, node.right)
@@ -666,6 +685,16 @@ def _is_rotation(value: Array) -> bool:
     """Whether a 3 x 3 matrix is one."""
     near = np.allclose(value @ value.T, np.eye(3), atol=TOLERANCES.formula_agrees)
     return near and bool(np.linalg.det(value) > 0.0)
+
+
+def _turned_part(node: Any) -> tuple[str, str] | None:
+    """The matrix and the name in ``R @ wrench[:3]``; None of anything else."""
+    if not isinstance(node, ast.BinOp) or not isinstance(node.op, ast.MatMult):
+        return None
+    part = node.right
+    if not isinstance(part, ast.Subscript) or not isinstance(part.slice, ast.Slice):
+        return None
+    return ast.dump(node.left), ast.dump(part.value)
 
 
 def _sums_in(node: ast.expr) -> Iterator[ast.expr]:
