@@ -230,8 +230,10 @@ class Tolerances:
 
     still: float = 1e-9
     """How far a joint moves at most over poses in which it does not move, rad or m."""
+
     last_digit: float = 1e-6
     """Share of a size below which two numbers of a body differ in their last digits alone."""
+
     same_body: float = 1e-8
     """Relative difference of masses, centres and tensors that is still rounding of their moving
     from one frame to another."""

@@ -15,6 +15,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import copied, located, nodes
 from kinlab.doctor.program.trial import FieldChange, Trial, quietly
+from kinlab.tolerances import TOLERANCES
 
 _KEPT = 64
 """Values of one expression that are kept."""
@@ -48,8 +49,9 @@ class Seen:
 
     @property
     def nothing(self) -> bool:
-        """Whether it was zero, or zeros, whenever it was seen."""
-        return bool(self.values) and not any(map(np.any, self.values))
+        """Whether it was zero, or zeros, but for rounding, whenever it was seen."""
+        floor = TOLERANCES.rounding_leaves
+        return bool(self.values) and all(np.all(np.abs(x) <= floor) for x in self.values)
 
 
 class Observed:

@@ -231,7 +231,7 @@ class Grounds:
     def _is_nothing(self, node: ast.expr) -> bool:
         """Whether an expression was zero wherever it was seen."""
         seen = self.observed.of(node)
-        return seen is not None and bool(seen.values) and not any(map(np.any, seen.values))
+        return seen is not None and seen.nothing
 
     def _spoils_a_number(self, edit: ProgramEdit) -> bool:
         """Whether an edit turns round a number that the robot has as it is typed."""

@@ -129,9 +129,8 @@ def of_mistyped(search: LineSearch) -> list[ProgramRepair]:
         own = of_table(search.trial, search.observed, search.case.robot)
         if any(tried.fits((edit,)) for edit in own):
             return []
-        single = search.singles()
-        if single and single[0].cost < _FAR and single[0].error <= TOLERANCES.formula_agrees:
-            return []  # what one plain edit explains needs no number beside it
+        if any(map(_is_plain, search.singles()[:1])):
+            return []  # what one edit explains needs no number beside it
         for way in odd:
             with changed(search.trial, way):
                 here = _beside(search, way, thorough=True)
@@ -344,6 +343,11 @@ class _Several:
                 if here.likely(one.edits[-1]) < cost + (_GAINED if more > 0 else _LOST) * more:
                     return self.settled(search, better[k:], turns + 1)
         return found
+
+
+def _is_plain(repair: ProgramRepair) -> bool:
+    """Whether one edit, and no far-fetched one, leaves nothing."""
+    return repair.cost < _FAR and repair.error <= TOLERANCES.formula_agrees
 
 
 def _is_far(repair: ProgramRepair, stand: Way) -> bool:
