@@ -182,6 +182,11 @@ def test_a_program_that_is_right_otherwise_is_not_wrong(tmp_path):
     assert result.exit_code == 0, result.output
     assert "2 right but written otherwise" in result.output and "WRONG" not in result.output
     assert "another zero" in result.output and "it is the same angle" in result.output
+    for suffix in ("html", "md"):
+        report = tmp_path / f"otherwise.{suffix}"
+        assert run(file, "--report", report).exit_code == 0
+        page = report.read_text()
+        assert "another zero" in page and "ritten unusually" in page and "FAILS" not in page
     wrong = tmp_path / "wrong.py"
     wrong.write_text(OTHERWISE.replace("- sign*", "+ sign*").replace("+ 7", "+ q[0]"))
     result = run(wrong)

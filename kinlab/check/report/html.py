@@ -119,9 +119,10 @@ def _environment() -> Environment:
 
 
 def _told(found: Diagnosis) -> str:
-    if found.agrees:
+    if found.agrees and not found.remarks:
         told = _("Agrees with {quantity} of {robot}.")
         return told.format(quantity=found.quantity, robot=found.robot)
     # no capital: the sentence may begin with a name
     verdict = sentence(_(found.verdict))[:-1]
-    return _("{verdict}: {sentence}.").format(verdict=verdict, sentence=found.sentence)
+    said = _("; ").join(found.remarks) if found.agrees else found.sentence
+    return _("{verdict}: {sentence}.").format(verdict=verdict, sentence=said)
