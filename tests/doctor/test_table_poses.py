@@ -181,3 +181,12 @@ def test_poses_in_millimetres_may_be_what_is_wrong():
     T[:, :3, 3] *= 1000.0
     found = kl.diagnose_table(PUMA, poses=(q, T))
     assert not found.agrees and any("another unit" in note for note in found.notes)
+
+
+def test_noise_does_not_hide_that_joints_rest():
+    q, _ = measured(PUMA, 40)
+    q[:, 1:] = 0.3
+    T = PUMA.fk(q)[:, -1].copy()
+    T[:, :3, 3] += 1e-4 * np.random.default_rng(1).standard_normal((len(T), 3))
+    found = kl.diagnose_table(PUMA, poses=(q, T))
+    assert any("joints 2, 3, 4, 5 and 6 do not move" in note for note in found.notes)

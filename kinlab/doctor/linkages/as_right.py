@@ -64,10 +64,12 @@ class AsRight:
     Attributes:
         case: with the quantity that answers so.
         factor: what an equation is multiplied by, ``"1"``.
+        told: what is to be said of it, where it is not the engine's.
     """
 
     case: Case
     factor: str = "1"
+    told: str = ""
 
     @property
     def answers(self) -> Array:
@@ -146,7 +148,11 @@ def _of_one_mode(case: Case, hand: Array, text: Written) -> list[AsRight]:
         return []
     if not tree.names(text.node) <= {*_GIVEN, *known.parameters}:
         return []  # J11 and w1x are those of the mode that is asked for
-    every = [AsRight(_in_mode(case, signs), _MODE.format(*signs)) for signs in _MODES]
+    said = _("it is of the working mode {mode} alone, the signs of crank x rod")
+    every = [
+        AsRight(_in_mode(case, signs), told=said.format(mode=_MODE.format(*signs)))
+        for signs in _MODES
+    ]
     every.sort(key=lambda way: _typical(way, hand))
     other = [x for x in every[1:] if not np.allclose(x.answers, every[0].answers)]
     return [every[0], *other[:1]]
@@ -191,7 +197,7 @@ def times(case: Case, hand: Array, engine: Array) -> tuple[Array, str] | None:
     if engine.ndim == 1:  # A, B or C alone
         for way in ways(case)[1:]:
             if np.max(relative_errors(hand, way.answers)) <= TOLERANCES.formula_agrees:
-                return engine, _multiplied(way)
+                return engine, way.told
     return None
 
 
@@ -199,7 +205,7 @@ def _as_loop(case: Case, hand: Array, engine: Array) -> tuple[Array, str] | None
     """The loop's equation times a number, or one of lengths and not of their squares."""
     same = _without_factor(hand, engine)
     if same is not None:
-        return same, _("the equation is multiplied by a constant: it is the same equation")
+        return same, _by_a_constant()
     lengths = np.asarray(_lengths(case).answer(()), dtype=float)
     if np.max(relative_errors(hand, lengths)) <= TOLERANCES.formula_agrees:
         same = lengths
@@ -221,7 +227,7 @@ def _times_any(case: Case, hand: Array) -> Iterator[AsRight]:
             continue
         number = float(np.sum(hand * right) / np.sum(right * right))
         for powers in _POWERS:
-            yield AsRight(_scaled(one, number, powers), "c")
+            yield AsRight(_scaled(one, number, powers), told=_by_a_constant())
 
 
 def _scaled(case: Case, here: float, powers: tuple[int, int]) -> Case:
@@ -282,27 +288,13 @@ def _turns(way: AsRight, hand: Array) -> float:
 
 
 def _said(way: AsRight, found: Diagnosis) -> Diagnosis:
-    if way.factor == "1":
+    if not way.told or not found.agrees:
         return found
-    if found.agrees:
-        told = _multiplied(way)
-        return replace(found, form=found.form or "unusual", remarks=(*found.remarks, told))
-    return found
+    return replace(found, form=found.form or "unusual", remarks=(*found.remarks, way.told))
 
 
-def _multiplied(way: AsRight) -> str:
-    if way.factor.startswith("("):
-        said = _("it is of the working mode {mode} alone, the signs of crank x rod")
-        return said.format(mode=way.factor)
-    if way.factor == "c":
-        return _("the equation is multiplied by a constant: it is the same equation")
-    of_one = way.case.quantity.name.endswith("_equation")  # A, B or C
-    told = (
-        _("it is multiplied by {factor}: right if A, B and C all are")
-        if of_one
-        else _("the equation is multiplied by {factor}")
-    )
-    return told.format(factor=way.factor)
+def _by_a_constant() -> str:
+    return _("the equation is multiplied by a constant: it is the same equation")
 
 
 def _with_engine(case: Case, answer: Callable[..., Any]) -> Case:
@@ -322,7 +314,13 @@ def _times(case: Case, factor: str) -> AsRight:
         sizes = number * lengths**power
         return found * sizes.reshape(sizes.shape + (1,) * (found.ndim - sizes.ndim))
 
-    return AsRight(_with_engine(case, engine), factor)
+    of_one = case.quantity.name.endswith("_equation")  # A, B or C
+    told = (
+        _("it is multiplied by {factor}: right if A, B and C all are")
+        if of_one
+        else _("the equation is multiplied by {factor}")
+    )
+    return AsRight(_with_engine(case, engine), factor, told.format(factor=factor))
 
 
 def _of_leg(case: Case, fivebar: FiveBar, given: Mapping[str, Any]) -> Array:

@@ -82,7 +82,7 @@ def diagnose_table(
         reference = of_poses(*poses)
     else:
         reference = read_reference(against, table, tool=tool, seed=seed)
-    notes = [*reference.notes, *check_joints(table, reference)]
+    notes = [*reference.notes, *check_joints(table, reference), *_at_rest(table, reference)]
     wanted = _compares_bodies(table, reference, dynamics, notes)
     if wanted and any(x.viscous_friction or x.coulomb_friction for x in table.links):
         notes.append(_("friction is not compared"))
@@ -197,13 +197,6 @@ def _told(
     maybe = unseen.union(*(cause.rows for option in options for cause in option[1]))
     rest = tuple(i for i in range(1, repaired.n + 1) if i not in maybe and not whole)
     told = joined(causes)
-    if unseen:
-        still = ngettext(
-            "joint {joints} does not move in the poses: of rows {rows} they say nothing for sure",
-            "joints {joints} do not move in the poses: of rows {rows} they say nothing for sure",
-            len(reference.still),
-        ).format(joints=listed(reference.still), rows=listed(sorted(unseen)))
-        common["notes"] = (*common["notes"], still)
     if reference.axes is None and any(cause.column == "units" for cause in causes):
         units = _("it may as well be the poses that are in another unit than metres")
         common["notes"] = (*common["notes"], units)
@@ -237,6 +230,19 @@ def _unseen(chain: Chain, reference: Reference) -> set[int]:
     around = (0, 1) if chain.modified else (-1, 0)
     rows = {joint + k for joint in reference.still for k in around}
     return {row for row in rows if 1 <= row <= chain.n}
+
+
+def _at_rest(table: DHTable, reference: Reference) -> list[str]:
+    """What is said of joints that move in none of the poses."""
+    unseen = _unseen(Chain.of(table), reference)
+    if not unseen:
+        return []
+    still = ngettext(
+        "joint {joints} does not move in the poses: of rows {rows} they say nothing for sure",
+        "joints {joints} do not move in the poses: of rows {rows} they say nothing for sure",
+        len(reference.still),
+    )
+    return [still.format(joints=listed(reference.still), rows=listed(sorted(unseen)))]
 
 
 _Option = tuple[DHTable, tuple[Cause, ...], list[Cause], list[str]]

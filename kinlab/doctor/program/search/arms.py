@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -52,7 +53,7 @@ def other_arms_of(asked: Asked, observed: Observed, work: Work) -> OtherArms:
     """The other arms for which a program may be right, as it is."""
     every = (node for tree in asked.trial.trees for node in nodes(tree))
     whole = frozenset(id(node) for node in every if type(getattr(node, "value", None)) is int)
-    return OtherArms(asked, observed, work, _arms(asked, observed), whole, {}, {})
+    return OtherArms(asked, observed, work, _arms(asked, observed), whole, {})
 
 
 @dataclass(frozen=True)
@@ -66,7 +67,6 @@ class OtherArms:
         before: the arms for the program as it was.
         whole: which of its nodes were whole numbers, by their identities.
         there: what is right of them, as far as it was asked for.
-        kept: an arm with parallel axes, once it was asked for.
     """
 
     asked: Asked
@@ -75,7 +75,6 @@ class OtherArms:
     before: Pair
     whole: frozenset[int]
     there: dict[OtherArm, Asked | None]
-    kept: dict[str, OtherArm | None]
 
     def of(self, several: tuple[ProgramEdit, ...]) -> Pair:
         """The other arms for the program as it stands now, with these edits in it."""
@@ -109,15 +108,18 @@ class OtherArms:
             known = [arm for arm in self.of(several) if arm is not None and arm.whole]
             return any(self.at(arm) is not None and self.hold_for(arm) for arm in known)
 
+    @cached_property
+    def _parallel(self) -> OtherArm | None:
+        case = self.asked.case
+        masses = case.quantity.name not in _KINEMATIC
+        return parallel_arm(case.robot, self.asked.trial, self.observed, masses)
+
     def holds_for_parallel_axes(self) -> bool:
         """Whether the program as it stands now is right for another arm with parallel axes."""
-        case, given = self.asked.case, (self.asked.trial, self.observed)
-        if "parallel" not in self.kept:
-            masses = case.quantity.name not in _KINEMATIC
-            self.kept["parallel"] = parallel_arm(case.robot, *given, masses)
-        other = self.kept["parallel"]
-        known = other is not None and other.whole and self.at(other) is not None
-        return known and other is not None and self.hold_for(other)
+        other = self._parallel
+        if other is None or not other.whole or self.at(other) is None:
+            return False
+        return self.hold_for(other)
 
     def only_here(self, several: tuple[ProgramEdit, ...]) -> bool:
         """Whether edits hold for this arm alone, where a program that is right holds for others."""
