@@ -34,6 +34,8 @@ _FRACTION = re.compile(r"\\[dt]?frac\s*$")
 _BRACED = re.compile(r"_\{(\w)\}")
 _BARE = re.compile(r"\\(?:sin|cos|tan)(\s*)(?:\\[a-z]+|[A-Za-z])")
 _SINGLE = re.compile(r"(\\(?:sin|cos|tan))\(((?:\\[a-z]+|[A-Za-z])(?:_\w|_\{\w+\})?)\)")
+_PLAIN_WAVE = re.compile(r"(?<![\\A-Za-z])(?:sin|cos|tan|sqrt)(?![A-Za-z])")
+"""A function without a backslash."""
 _MACRO = "\\"
 _HALF = re.compile(r"\(\((\w+)\)/\((\w+)\)\)")
 _BELOW = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
@@ -290,7 +292,8 @@ class Typing:
         if name in known:
             return known[name]
         if name in ("sin", "cos", "tan", "sqrt"):
-            return rf"\{name}" if self._latex else f"{self._prefix}{name}"
+            macro = self._latex and not _PLAIN_WAVE.search(self.typed)
+            return rf"\{name}" if macro else f"{self._prefix}{name}"
         head, digits = re.fullmatch(r"(.*?)(\d*)", name).groups()  # type: ignore[union-attr]
         for like, shown in known.items():
             found = re.fullmatch(r"(.*?)_?(\d+)", like)

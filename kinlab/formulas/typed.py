@@ -820,6 +820,7 @@ _IN_BOOKS = (
     "tau u Q t inverse_dynamics inverse_dynamics_loaded lagrange_torques",
     "tau t statics statics_tool",
     "V C H N B cv coriolis_torques",
+    "N S skew_matrix",
     "p momentum",
     "qdd ddq forward_dynamics",
     "q th theta inverse_kinematics inverse_kinematics_xy inverse_kinematics_xyphi "

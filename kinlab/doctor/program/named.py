@@ -9,12 +9,14 @@ from dataclasses import replace
 import numpy as np
 
 from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.changes import table_of
 from kinlab.doctor.glossary.meaning import meaning_of, said
 from kinlab.doctor.glossary.textbook import Glossary, Sense
 from kinlab.doctor.program.edits.numbers.data import shown
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit
 from kinlab.doctor.program.search.repair import LineSearch
+from kinlab.tolerances import TOLERANCES
 
 _PLAIN = ("positions", "velocities", "accelerations")
 """What everybody knows of a function's own arguments."""
@@ -31,7 +33,7 @@ def named(edit: ProgramEdit, search: LineSearch) -> list[tuple[str, str]]:
     if not known or edit.kind in ("loop", "condition"):
         return []
     if edit.part == DATA:
-        if edit.numbers is None:
+        if edit.numbers is None or _is_of_several(edit.numbers[1], search):
             return []
         right = np.array(edit.numbers[1])
         sense = meaning_of(known, [right for _state in known])
@@ -46,6 +48,17 @@ def named(edit: ProgramEdit, search: LineSearch) -> list[tuple[str, str]]:
             if sense is not None and sense.what not in _PLAIN:
                 out.setdefault(text, said(sense))
     return [*out.items()]
+
+
+def _is_of_several(value: float, search: LineSearch) -> bool:
+    """Whether several numbers of the arm's are that, with either sign: whose it is, is not said."""
+    table = table_of(search.case.robot)
+    links = () if table is None else table.links
+    moments = (float(x) for k in links for x in np.diagonal(np.asarray(k.inertia)))
+    lengths = [x for k in links for x in (float(k.a), float(k.d), float(k.mass))]
+    lengths += [float(x) for k in links for x in np.asarray(k.com)]
+    same = [abs(abs(x) - abs(value)) <= TOLERANCES.same_number for x in (*lengths, *moments)]
+    return sum(same) > 1
 
 
 def _pieces(node: ast.AST) -> Iterator[ast.expr]:

@@ -22,6 +22,7 @@ from kinlab.doctor.program.digits import of_rounded_numbers
 from kinlab.doctor.program.edits.chains import SUMS, chain, joined
 from kinlab.doctor.program.edits.numbers.as_the_arm import of_table
 from kinlab.doctor.program.edits.numbers.data import leaves, shown
+from kinlab.doctor.program.edits.numbers.exchanged import as_exchanged, key_text
 from kinlab.doctor.program.grounds.scaled import is_own
 from kinlab.doctor.program.named import named
 from kinlab.doctor.program.nearly import of_small_numbers
@@ -336,13 +337,19 @@ _SLIPS = {
 def cause_of(repair: ProgramRepair, search: LineSearch) -> Cause:
     """A repair as a cause."""
     trial = search.trial
-    told = [*_told(repair, trial)]
+    rivals = repair.rivals if not _beside(repair, trial) else ()
+    shared = {id(edit) for one in rivals[:1] for edit in one.edits}
+    last = [edit for edit in repair.edits if id(edit) not in shared]
+    both = [edit for edit in repair.edits if id(edit) in shared] if rivals else []
+    told = [*_told(replace(repair, edits=(*both, *last)), trial)]
     known = [one for edit in repair.edits for one in named(edit, search)]
     is_ = _("`{piece}` is {thing}")
     told += [is_.format(piece=_typed(text), thing=thing) for text, thing in known[:_NAMED]]
     sentence = _("; ").join(dict.fromkeys(told))
-    for rival in repair.rivals if not _beside(repair, trial) else ():
-        other = _("; ").join(dict.fromkeys(_told(rival, trial)))
+    own = {id(edit) for edit in repair.edits}
+    for rival in rivals:
+        apart = tuple(edit for edit in rival.edits if id(edit) not in own)
+        other = _("; ").join(dict.fromkeys(_told(replace(rival, edits=apart), trial)))
         sentence = _("{one}; or else {other}").format(one=sentence, other=other)
     return Cause(
         sentence,
@@ -457,8 +464,7 @@ def _place(edit: ProgramEdit) -> str:
 
 
 def _of_data(edit: ProgramEdit, trial: Trial) -> str:
-    keys = (key if str(key).startswith(".") else f"[{key!r}]" for key in edit.place)
-    name = edit.node + "".join(keys)
+    name = edit.node + key_text(edit)
     number = line_of(trial.program.parts[0].function, edit.node, edit.place)
     if number is not None:
         name = _("line {number}, {name}").format(number=number, name=name)
@@ -631,11 +637,12 @@ def believed(repair: ProgramRepair, search: LineSearch) -> ProgramRepair | None:
         return None
     edits = []
     for edit in repair.edits:
-        if _robots_own(edit, search) or _of_rounding(edit, search) or _a_step(edit, repair, search):
+        if _robots_own(edit, search) or _of_rounding(edit, search) or _a_step(edit, repair):
             return None
         edits.append(_branch(edit, repair, search) or _idle(edit, repair, search) or edit)
     rivals = [believed(one, search) for one in repair.rivals]
-    return replace(repair, edits=tuple(edits), rivals=tuple(one for one in rivals if one))
+    rivals_ = tuple(one for one in rivals if one)
+    return replace(repair, edits=as_exchanged(edits), rivals=rivals_)
 
 
 def _needed(repair: ProgramRepair, search: LineSearch) -> bool:
@@ -680,27 +687,12 @@ def _of_rounding(edit: ProgramEdit, search: LineSearch) -> bool:
     return False
 
 
-def _a_step(edit: ProgramEdit, repair: ProgramRepair, search: LineSearch) -> bool:
-    """Whether a number is made small until only the noise of differences is left.
-
-    Or a step is multiplied, which makes up for a factor elsewhere.
-    """
-    if edit.kind == "factor" and edit.part != DATA:
-        inside = [getattr(node, "value", None) for node in nodes(edit.node)]
-        seen = search.observed.of(edit.node)
-        if isinstance(edit.node, ast.Name) and seen is not None and seen.shape == ():
-            inside += [float(value) for value in seen.values[:1] if not _divides(edit, search)]
-        return any(isinstance(x, float) and 0 < abs(x) <= TOLERANCES.is_step for x in inside)
+def _a_step(edit: ProgramEdit, repair: ProgramRepair) -> bool:
+    """Whether a number is made small until only the noise of differences is left."""
     if edit.numbers is None or repair.error <= TOLERANCES.formula_agrees:
         return False
     old, new = map(abs, edit.numbers)
     return bool(0 < new < _STEP * old)
-
-
-def _divides(edit: ProgramEdit, search: LineSearch) -> bool:
-    every = nodes(search.trial.trees[edit.part])
-    below = [x.right for x in every if isinstance(x, ast.BinOp) and isinstance(x.op, ast.Div)]
-    return any(_inside(edit.node, one) for one in below)
 
 
 def _branch(edit: ProgramEdit, repair: ProgramRepair, search: LineSearch) -> ProgramEdit | None:

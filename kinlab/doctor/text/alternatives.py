@@ -494,6 +494,10 @@ def _as_fraction(line: Line, place: Place, left: Place, right: Place) -> None:
     line.edit(place, front.value, (start, end, ""), "factor", 1.1, told, pieces)
 
 
+_DECIMAL = re.compile(r"\s*[-+]?\s*(\d+\.\d*[1-9]\d*)(?![\d.eE/]|\s*/)")
+"""A number with decimals that a term begins with."""
+
+
 def _as_factor(line: Line, place: Place) -> None:
     """Squares, and factors that are missing in front of a term."""
     node = place.node
@@ -529,8 +533,15 @@ def _as_factor(line: Line, place: Place) -> None:
     body = wrapped if whole else piece
     numbered = 0.15 * bool(re.search(r"(?<![\w.*])(?:/\s*)?\d", body))  # 2*x/2 is x
     decimal = re.search(r"(?<![\d.])0?\.5(?!\d)", line.source)
+    front_ = _DECIMAL.match(piece)
     for shown, size in _FACTORS.items():
         shown = "0.5" if decimal and shown == "/2" else shown
+        number = "" if front_ is None else f"{size * float(front_[1]):.12g}"
+        if front_ is not None and 1 < len(number) <= len(front_[1]) + 1:  # 2.943 for 5.886/2
+            retyped = (start + front_.start(1), start + front_.end(1), number)
+            new = f"{piece[: front_.start(1)]}{number}{piece[front_.end(1) :]}"
+            line.instead(place, new, size * place.value, "factor", 1.35, retyped)
+            continue
         new = f"{body}{shown}" if shown[0] == "/" else f"{shown}*{body}"
         cost = (1.2 if size in (2.0, 0.5) else 1.6) + extra + numbered
         span = (end, end, shown) if shown[0] == "/" else (first, first, f"{shown}*")

@@ -17,6 +17,7 @@ from kinlab.doctor.program.places import (
     Here,
     ProgramEdit,
     follow,
+    is_nothing,
     number,
     numbered,
     root,
@@ -61,6 +62,12 @@ _TYPED = 0.14
 """What it costs more to transpose numbers that are typed: they would be typed so."""
 _AS_GIVEN = 0.02
 """What it is likelier of what a line only takes over: ``n = wrench[3:]``."""
+_GIVEN_ON = 1.12
+"""Cost of a sign of what a function only gives on, or an object only keeps."""
+_KEPT = 1.22
+"""Cost of a factor of what an object only keeps."""
+_AS_SET = 1.05
+"""Cost of a sign in a row of what was set before."""
 _DIVIDED = 1.07
 """Cost of a divisor that is lost."""
 _SAME_NUMBER = 0.06
@@ -124,6 +131,11 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         given = isinstance(outer, ast.Assign | ast.Return)
         alone = isinstance(node, ast.Name | ast.Subscript | ast.Attribute) and given
         cost = 1.06 if alone else 1.0 if first or entry else 1.03 if whole else 1.1
+        given_on = here.part and isinstance(outer, ast.Return) and isinstance(node, ast.Name)
+        if alone and (_keeps(parent, node) or given_on):
+            cost = _GIVEN_ON
+        if entry and (_is_counted(parent) or _is_alone(parent, node)):
+            cost = _AS_SET
         yield here.instead(chains.opposite(node), "sign", cost)
     below = isinstance(op, ast.Div) and here.field == "right"
     if (summand or listed or trig or below) and not isinstance(node, ast.Constant):
@@ -133,8 +145,9 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
             named = isinstance(node, ast.BinOp) and not isinstance(node.right, ast.Constant)
             times = chains.part_of(node, 2) if value < 1 and named else None
             times = times or chains.times(number(value), node)
-            rare = trig or value == _THRICE or _keeps(parent, node)
+            rare = trig or value == _THRICE
             cost = 1.15 if rare else 1.05 + _ODD * (passed or counted)
+            cost = _KEPT if _keeps(parent, node) else cost
             cost = _MIXED if value == 2 and _is_mixed(here) else cost
             yield here.instead(times, "factor", cost)
     if (summand or whole) and not isinstance(node, ast.Constant):
@@ -189,6 +202,19 @@ def _in_the_other_case(here: Here) -> Iterator[ast.expr]:
         for term in summands(other):
             if isinstance(term, ENTRIES):
                 yield term
+
+
+def _is_counted(row: ast.AST) -> bool:
+    """Whether a row is of what was worked out before, one after another: ``[q1, q2, q3]``."""
+    every = [numbered(one) for one in getattr(row, "elts", ())]
+    known = [one[1] for one in every if one is not None]
+    return len(known) == len(every) > 1 and known == [*range(known[0], known[0] + len(known))]
+
+
+def _is_alone(row: ast.AST, node: ast.expr) -> bool:
+    """Whether an entry of a list stands in a row beside noughts alone: ``[a[i], 0, 0]``."""
+    others = [one for one in getattr(row, "elts", ()) if one is not node]
+    return isinstance(node, ast.Subscript) and bool(others) and all(map(is_nothing, others))
 
 
 def _keeps(parent: ast.AST, node: ast.expr) -> bool:

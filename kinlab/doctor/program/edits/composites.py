@@ -146,7 +146,9 @@ def _turned_tensors(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
         for _text, one in scope.simple(_TENSOR)
         if _begins(one, _ROTATIONS) or isinstance(getattr(one, "slice", None), ast.Tuple)
     ]
-    if isinstance(here.node, ast.BinOp) or not _begins(here.node, (*_MOMENTS, *_TENSORS)):
+    target = here.parent.targets[0] if isinstance(here.parent, ast.Assign) else None
+    called_so = target if isinstance(here.node, ast.Call) and target is not None else here.node
+    if isinstance(here.node, ast.BinOp) or not _begins(called_so, (*_MOMENTS, *_TENSORS)):
         return
     for one in rotations[:_FEW]:
         turned = ast.Attribute(one, "T", ast.Load())

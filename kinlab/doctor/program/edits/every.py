@@ -61,6 +61,10 @@ _SUMMED = 0.06
 """What a sign or factor costs more in a sum of names, each of which has a line of its own."""
 _ENTRIES = ast.Name | ast.Subscript | ast.Attribute
 """What a term more may be, of which one more is rather a factor 2."""
+_TWO = 2
+"""Names in a sum that are a formula of their own."""
+_GIVEN = 0.04
+"""What another argument costs more where one joint's follows on another's."""
 _NUMBERED = 1.08
 """Cost of another joint's number in a test for one: ``i == 2`` for ``i == 3``."""
 _FILLED = 1.04
@@ -75,6 +79,7 @@ def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[Pro
     """Every single edit of a program, of whose parts these are the scopes; the likeliest first."""
     found: list[ProgramEdit] = []
     elsewhere = Elsewhere(trial, observed)
+    own_parts = {one.name for one in trial.program.parts}
     for part, tree in enumerate(trial.trees):
         scope, by = scopes[part], (masks(tree), choices(tree))
         columns = columns_of(tree, observed)
@@ -89,6 +94,8 @@ def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[Pro
                     every += (*of_columns(here, columns, scope, observed),)
                     if _sums_names(here, scope):
                         every = (*(_dearer(x, _SUMMED) for x in every),)
+                    if _is_given_in_order(here, own_parts):
+                        every = (*(replace(x, cost=x.cost + _GIVEN) for x in every),)
                     own = _set_here(here) if isinstance(node, ast.Name) else []
                     if own:
                         every = (*(_unchanged(x, own) for x in every),)
@@ -164,10 +171,29 @@ def _dearer(edit: ProgramEdit, more: float) -> ProgramEdit:
 
 
 def _sums_names(here: Here, scope: Scope) -> bool:
-    """Whether it is of a sum of nothing but names, which are set before: ``m + c + g``."""
-    value = getattr(statement_of(here.above), "value", None)
+    """Whether it is of a sum of nothing but names, which are set before: ``m + c + g``.
+
+    Two of them may be one formula where a name is set to them: ``q1 = beta - psi``.
+    """
+    statement = statement_of(here.above)
+    value = getattr(statement, "value", None)
     terms = [*summands(value)] if isinstance(value, ast.BinOp) else []
-    return len(terms) > 1 and all(isinstance(x, ast.Name) and x.id in scope.set_at for x in terms)
+    known = [isinstance(x, ast.Name) and x.id in scope.set_at for x in terms]
+    target = statement.targets[0] if isinstance(statement, ast.Assign) else None
+    own = target is not None and {*names(target)}.isdisjoint(map(text_of, terms))
+    return len(known) > (_TWO if own else 1) and all(known)
+
+
+def _is_given_in_order(here: Here, own: set[str]) -> bool:
+    """Whether a function of the program's own is given one joint's after another's.
+
+    As in ``gravity(q[0], q[1])``: what it makes of these is rather wrong than these.
+    """
+    call = here.parent
+    if not isinstance(call, ast.Call) or called(call) not in own:
+        return False
+    beside = call.args[max(here.field - 1, 0) : here.field + 2] if here.holder is call.args else []
+    return any(follow(one, here.node) for one in beside if one is not here.node)
 
 
 def _says_where(here: Here) -> bool:

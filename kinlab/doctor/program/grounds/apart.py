@@ -117,7 +117,7 @@ def arm_apart(
     carried = {cells[k].which for one, k in strange if may_be_of_one_arm(one.value)}
     carried |= {cells[k].which for _one, k in ways[0]}
     back = _opposite(table, carried)
-    other = _apart(table, carried | {*back.values()}, reader.tied | back, turned)
+    other = _apart(table, carried | {*back.values()}, reader.tied | back, turned, reader.odd)
     new = _cells(other, 0.0)
     puts = [
         [
@@ -482,8 +482,13 @@ def _strange(values: Iterable[float]) -> list[float]:
     return [x for x in map(float, values) if not named_at_will(x)]
 
 
-def _apart(table: DHTable, carried: set[Which], tied: dict[Which, Which], turned: float) -> DHTable:
-    """The arm with other numbers for those that a program has names for."""
+def _apart(
+    table: DHTable, carried: set[Which], tied: dict[Which, Which], turned: float, odd: bool
+) -> DHTable:
+    """The arm with other numbers for those that a program has names for.
+
+    Where one of these is ``odd`` it may be a centre's, and none need be in the middle of its link.
+    """
     every = [(f"{name}{axis}", -1) for name in ("tool", "base") for axis in range(3)]
     every += [(what, k) for what in ("a", "d", "m", "I") for k in range(table.n)]
     every += [(f"com{axis}", k) for axis in range(3) for k in range(table.n)]
@@ -507,7 +512,7 @@ def _apart(table: DHTable, carried: set[Which], tied: dict[Which, Which], turned
             which = f"com{axis}"
             lengths = np.array([link.a, link.d, length])
             middle = np.flatnonzero(_close(lengths, 2 * x))
-            if which not in told[k] and x and len(middle):
+            if which not in told[k] and x and len(middle) and not odd:
                 moved[axis] = x * (factor("a", k), factor("d", k), longer)[middle[0]]
             elif standard and x and not axis:
                 moved[0] = factor(which, k) * (link.a + x) - a

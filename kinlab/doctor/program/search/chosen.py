@@ -11,9 +11,11 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.changes import table_of
 from kinlab.doctor.glossary.textbook import Glossary
 from kinlab.doctor.program.edits.every import edits
 from kinlab.doctor.program.edits.numbers.as_the_arm import as_it_is, of_table
+from kinlab.doctor.program.edits.numbers.data import GRAVITY
 from kinlab.doctor.program.edits.numbers.own_numbers import of_own_numbers
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.grounds.as_called import of_centres
@@ -28,9 +30,18 @@ from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit
 from kinlab.doctor.program.search.asked import Asked
 from kinlab.doctor.program.trial import Trial
+from kinlab.tolerances import TOLERANCES
 
 _MADE = 0.86
 """Cost of an exchange after which a row is the robot's."""
+_TURNED = 0.05
+"""What the sign of a length in a row costs more."""
+_UPWARDS, _DOWNWARDS = 0.05, 0.01
+"""What gravity's sign costs more where it falls, and less where it rises."""
+_DECIMALS = 12
+"""Decimals of a length."""
+_OWN = 0.97
+"""Cost of the other sign of a number that is the robot's then."""
 _ROW = 3
 """Numbers of a row that tell whose it is."""
 
@@ -69,12 +80,49 @@ def chosen(
         edit
         for edit in every
         if not sure(edit) and edit.cost < below
-        if not (mirrors(edit) or _moves_one_of(rows, edit))
+        if not (mirrors(edit) or _moves_one_of(rows, edit) or _of_a_step(edit, trial, observed))
     ]
     every = [replace(x, cost=_MADE) if _makes_one_of(rows, x) else x for x in every]
+    every = [
+        replace(x, cost=x.cost + _TURNED) if turns_a_length(x, observed, robot) else x
+        for x in every
+    ]
+    every = [replace(x, cost=x.cost + more) if (more := _falling(robot, x)) else x for x in every]
+    every = [replace(x, cost=_OWN) if _makes_own(robot, x) else x for x in every]
     every = sorted(every, key=_at_best)[:most]
     weigh = dimensions.against
     return [replace(x, cost=x.cost + more) if (more := weigh(x)) else x for x in every]
+
+
+def turns_a_length(edit: ProgramEdit, observed: Observed, robot: Any) -> bool:
+    """Whether an entry of a row would get a minus that is a length or offset of the arm's."""
+    if edit.kind != "sign" or edit.part == DATA or not isinstance(edit.changes[0].holder, list):
+        return False
+    table, seen = table_of(robot), observed.of(edit.node)
+    if table is None or seen is None or seen.shape != ():
+        return False
+    lengths = {_size(x) for link in table.links for x in (link.a, link.d)}
+    values = {_size(x) for x in seen.values} - {0.0}
+    return bool(values) and values <= lengths
+
+
+def _size(value: Any) -> float:
+    """How large a number is, without its last digits: a cosine's nought is none."""
+    return round(abs(float(value)), _DECIMALS)
+
+
+def _of_a_step(edit: ProgramEdit, trial: Trial, observed: Observed) -> bool:
+    """Whether the step of a difference is multiplied, which makes up for a factor elsewhere."""
+    if edit.kind != "factor" or edit.part == DATA:
+        return False
+    inside = [getattr(node, "value", None) for node in nodes(edit.node)]
+    seen = observed.of(edit.node)
+    if isinstance(edit.node, ast.Name) and seen is not None and seen.values:
+        every = nodes(trial.trees[edit.part])
+        below = (x.right for x in every if isinstance(x, ast.BinOp) and isinstance(x.op, ast.Div))
+        if not any(node is edit.node for one in below for node in nodes(one)):
+            inside += [float(np.abs(value).max(initial=0.0)) for value in seen.values[:1]]
+    return any(isinstance(x, float) and 0 < abs(x) <= TOLERANCES.is_step for x in inside)
 
 
 def _mirroring(asked: Asked, observed: Observed) -> Callable[[ProgramEdit], bool]:
@@ -150,6 +198,27 @@ def _makes_one_of(rows: list[Array], edit: ProgramEdit) -> bool:
     else:
         values = [*first.new] if isinstance(first.new, tuple) else []
     return _is_one_of(rows, values)
+
+
+def _falling(robot: Any, edit: ProgramEdit) -> float:
+    """What the other sign of gravity in the data costs more, where it is the robot's as it is."""
+    if edit.part != DATA or edit.kind != "sign" or edit.numbers is None or not edit.place:
+        return 0.0
+    own = getattr(getattr(robot, "model", None), "gravity", None)
+    if own is None or not GRAVITY.match(str(edit.node)):
+        return 0.0
+    old, new = (bool(np.isclose(own.linear, x).any()) and x != 0.0 for x in edit.numbers)
+    return _UPWARDS * (old and not new) - _DOWNWARDS * (new and not old)
+
+
+def _makes_own(robot: Any, edit: ProgramEdit) -> bool:
+    """Whether a number that is none of the robot's is one with the other sign."""
+    if edit.kind != "sign" or edit.numbers is None or edit.cost <= _OWN:
+        return False
+    old, new = edit.numbers
+    if edit.place and GRAVITY.match(str(edit.node)):
+        return False  # it has a way of its own
+    return old == -new and is_own(robot, new) and not is_own(robot, old)
 
 
 def _moves_one_of(rows: list[Array], edit: ProgramEdit) -> bool:

@@ -69,7 +69,7 @@ _BESIDE = 0.08
 """The same of a missing term beside a factor, where it makes more what a textbook has."""
 _SET = 0.1
 """What a sign may cost more where a name is set than one in front of it."""
-_SAME = 0.011
+SAME = 0.011
 """Costs that are one."""
 _HELD = 8
 """Repairs of which it is looked whether they hold for other arms."""
@@ -254,7 +254,8 @@ class LineSearch:
             found = found or ([] if self.stand else self.parallel[:1])
             found = self._by_name(self._by_evidence(found))
             if not self.stand:
-                found = in_company(found, self.likely, _SAME, self.trial, _beside)
+                found = in_company(found, self.likely, SAME, self.trial, _beside)
+            found = self._beside_data(found)
             if below < np.inf:
                 return found
             if len(self.stand) < _STANDING and (not found or best > _NUMBER):
@@ -361,16 +362,32 @@ class LineSearch:
         ahead = [one for one in lines.values() if rights.get(id(one)) == most]
         first = ahead[0]
         row = row_of(first.edits[-1])
-        least = self.likely(first.edits[-1]) + _SAME
+        least = self.likely(first.edits[-1]) + SAME
         same = [
             one
             for one in ahead
             if one is first or row_of(one.edits[-1]) != row
-            if abs(one.cost - first.cost) <= _SAME and self.likely(one.edits[-1]) <= least
+            if abs(one.cost - first.cost) <= SAME and self.likely(one.edits[-1]) <= least
         ]
         rivals = [one for one in same[1:2] if not _add_the_same(first.edits[-1], one.edits[-1])]
         first = replace(first, rivals=tuple(rivals))
         return [first, *(one for one in found if one.edits != first.edits)]
+
+    def _beside_data(self, found: list[ProgramRepair]) -> list[ProgramRepair]:
+        """The first with a rival in the data, or in a line if it is of the data, as likely as it.
+
+        ``G = -9.81`` above, or a minus where G is used.
+        """
+        first = found[0].edits[-1] if found and not found[0].rivals else None
+        if first is None or first.kind != "sign":
+            return found
+        for one in found[1:]:
+            edit = one.edits[-1]
+            apart = (edit.part == DATA) != (first.part == DATA) and edit.kind == first.kind
+            near = apart and abs(self.likely(edit) - self.likely(first)) <= SAME
+            if near and self.left_right((edit,)) == self.left_right((first,)):
+                return [_beside(found[0], one), *found[1:]]
+        return found
 
     def _where_it_is_set(self, first: ProgramRepair, found: list[ProgramRepair]) -> ProgramRepair:
         """Of a sign in front of a name the one where the name is set, if it is right so."""

@@ -135,6 +135,25 @@ class Effects:
             found = self._threes(allowance)
         return sorted(found, key=self.cost)
 
+    def multiplying(self) -> list[Chosen]:
+        """Two edits that each multiply the whole answer, and together make it right."""
+        size = float(self.own @ self.own)
+        if not size or not np.isfinite(size):
+            return []
+        every = np.vstack([self.goal, self.rows])
+        ratios = 1.0 + every @ self.own / size
+        off = np.abs(self.own + every - ratios[:, None] * self.own).max(axis=1)
+        whole = (off <= self.near) & (np.abs(ratios) > self.near)
+        if not whole[0]:
+            return []
+        some = np.flatnonzero(whole[1:])
+        sizes = ratios[1:][some]
+        meets = np.abs(sizes[:, None] * sizes - ratios[0]) <= self.near * abs(ratios[0])
+        one, two = np.nonzero(np.triu(meets))
+        pairs = ((int(some[i]), int(some[j])) for i, j in zip(one, two, strict=True))
+        found = [(i, j) for i, j in pairs if i != j or len(self.alike[i]) > 1]
+        return sorted(found, key=self.cost)
+
     def _threes(self, allowance: float) -> list[Chosen]:
         """Three effects that add up to what is missing."""
         weights = np.random.default_rng(5).uniform(0.5, 1.5, len(self.goal))

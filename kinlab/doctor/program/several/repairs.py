@@ -6,6 +6,7 @@ first that explain most; then what is left is looked for beside an edit that mak
 
 from __future__ import annotations
 
+import copy
 from dataclasses import replace
 from itertools import chain, combinations
 from typing import Any
@@ -15,8 +16,9 @@ import numpy as np
 from kinlab.doctor.glossary.meaning import meaning_of
 from kinlab.doctor.program.edits.numbers.as_the_arm import of_table
 from kinlab.doctor.program.places import DATA, ProgramEdit, changed, row_of
+from kinlab.doctor.program.search.chosen import turns_a_length
 from kinlab.doctor.program.search.mistyped import mistyped
-from kinlab.doctor.program.search.repair import LineSearch, ProgramRepair
+from kinlab.doctor.program.search.repair import SAME, LineSearch, ProgramRepair
 from kinlab.doctor.program.several.effects import Chosen, Effects, Way, effects_of
 from kinlab.doctor.program.several.in_order import InOrder
 from kinlab.doctor.program.several.in_stages import InStages
@@ -104,13 +106,28 @@ def single(search: LineSearch) -> list[ProgramRepair]:
     The two are likelier if they leave more of the program as a textbook has it.
     """
     found = search.singles()
-    if not found or search.likely(found[0].edits[0]) < _FARTHEST:
+    if not found or not _is_doubtful(search, found[0].edits[0]):
         return found
-    two = several(search)[:1]
+    two = several(_without_right_ones(search))[:1]
     if not two or len(two[0].edits) > _DEEPEST or max(map(search.likely, two[0].edits)) >= _FAR:
         return found
-    more = search.left_right(two[0].edits) > search.left_right(found[0].edits)
-    return two if more else found
+    more = search.left_right(two[0].edits) - search.left_right(found[0].edits)
+    far = search.likely(found[0].edits[0]) >= _FARTHEST
+    return two if more > 0 or not (far or more) else found
+
+
+def _without_right_ones(search: LineSearch) -> LineSearch:
+    """The search without the edits that are right alone: for two in place of one."""
+    other = copy.copy(search)
+    right = search.asked.right
+    other.tried = [(edit, values) for edit, values in search.tried if not right(values).all()]
+    return other
+
+
+def _is_doubtful(search: LineSearch, edit: ProgramEdit) -> bool:
+    """Whether one edit may only make up for two: far-fetched, or a minus for a length as it is."""
+    far = search.likely(edit) >= _FARTHEST
+    return far or turns_a_length(edit, search.observed, search.case.robot)
 
 
 def of_mistyped(search: LineSearch) -> list[ProgramRepair]:
@@ -172,9 +189,15 @@ class _Several:
             return []
         pose = search.asked.wanted.shape[1:] == _POSE
         tried = _Tried(search)
-        found = tried.likeliest(known, known.adding_up(2))
+        found = tried.likeliest(known, known.multiplying())
+        found = found or tried.likeliest(known, known.adding_up(2))
         if not found and pose:
             found = tried.likeliest(known, known.in_a_row(2, _POSE))
+        if found and any(
+            turns_a_length(x, search.observed, search.case.robot) for x in found[0].edits
+        ):
+            pairs = (tried.likeliest(known, x) for x in TriedTogether(search, known).pairs())
+            found = min(found, next(filter(None, pairs), found), key=lambda some: some[0].cost)
         if found:
             return self.settled(search, found)
         in_order = InOrder(search, known, 0 if search.stand else _IN_ORDER)
@@ -326,6 +349,7 @@ class _Several:
             return found
         own = found[0].edits[len(search.stand) :]
         right = search.left_right(own)
+        rivals = [*found[0].rivals]
         # the last one was the likeliest beside the others when it was found so
         for edit in own[:-1] if turns else own:
             others = tuple(one for one in own if one is not edit)
@@ -338,11 +362,14 @@ class _Several:
                 continue
             for k, one in enumerate(better):
                 more = search.left_right((*others, one.edits[-1])) - right
+                gap = here.likely(one.edits[-1]) - cost
+                if not more and abs(gap) <= SAME and _apart([edit, one.edits[-1]])[1:]:
+                    rivals.append(one)
                 if k and more <= 0:
                     continue  # the first is the likeliest of those that leave no more right
-                if here.likely(one.edits[-1]) < cost + (_GAINED if more > 0 else _LOST) * more:
+                if gap < (_GAINED if more > 0 else _LOST) * more:
                     return self.settled(search, better[k:], turns + 1)
-        return found
+        return [replace(found[0], rivals=(*rivals[:1],)), *found[1:]]
 
 
 def _is_plain(repair: ProgramRepair) -> bool:

@@ -65,9 +65,9 @@ def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
             yield cell.edit(right)
     off: dict[tuple[Any, int], dict[Any, list[tuple[_Cell, float]]]] = {}
     alone: set[tuple[_Cell, float]] = set()
-    columns = _columns_of(trial, observed)
+    every = _columns_of(trial, observed)
+    columns = {name: _from_zero(found, table.n) for name, found in every.items()}
     for name, found in columns.items():
-        found = _from_zero(found, table.n)
         rows = sorted(found)  # of a column with None for what turns or slides, those that are told
         if rows and rows[-1] < table.n and len(rows) >= max(_TOLD, table.n - _MOVING):
             values = [found[i].value for i in rows]
@@ -76,19 +76,19 @@ def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
                 some = [(found[rows[j]], values[k + k + 1 - j]) for j in (k, k + 1)]
                 one, other = (x.holder if x.place is None else x.place.holder for x, _y in some)
                 if one is other:  # numbers of two rows are told one by one
-                    yield _row(rows[k], some, [found[j] for j in rows], True)
+                    yield _row(some, [found[j] for j in rows], True)
             for (at, right), count in _wrong(values, told).items():
                 k = rows[at]
                 off.setdefault((name[0], k), {}).setdefault(name, []).append((found[k], right))
                 alone |= {(found[k], right)} if count == 1 else set()
     for (whose, k), cells in off.items():
         whole = [found[k] for key, found in columns.items() if key[0] == whose and k in found]
-        every = [one for found in cells.values() for one in found if one in alone]
-        pairs = (x for x in combinations(every, 2) if _same(x[0][1], x[1][0].value))
+        some_alone = [one for found in cells.values() for one in found if one in alone]
+        pairs = (x for x in combinations(some_alone, 2) if _same(x[0][1], x[1][0].value))
         swapped = [x for x in pairs if _same(x[1][1], x[0][0].value)]
         others = islice(product(*cells.values()), _ROWS) if len(cells) > 1 else ()
         for some in (*swapped, *others):
-            row = _row(k, some, whole, alone.issuperset(some))
+            row = _row(some, whole, alone.issuperset(some))
             yield replace(row, cost=row.cost + _TOGETHER)
         yield from (cell.edit(right) for found in cells.values() for cell, right in found)
 
@@ -96,6 +96,8 @@ def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
 def _of_legs(trial: Trial, observed: Observed, robot: FiveBar) -> Iterator[ProgramEdit]:
     """Numbers of a five-bar's two legs exchanged, where as many others are in the legs' order."""
     known = {tuple(x) for x in robot.values().values() if isinstance(x, list) and len({*x}) == 2}
+    every = [np.ravel(x) for x in robot.values().values() if not isinstance(x, str)]
+    own = {abs(float(x)) for row in every for x in row if not isinstance(x, str | bool)}
     straight: list[Any] = []
     turned: list[list[_Cell]] = []
     for found in _columns_of(trial, observed).values():
@@ -104,8 +106,18 @@ def _of_legs(trial: Trial, observed: Observed, robot: FiveBar) -> Iterator[Progr
             pair = cells[0].value, cells[1].value
             straight += [pair] if pair in known else []
             turned += [cells] if pair not in known and pair[::-1] in known else []
+            if pair not in known and (2 * pair[0], 2 * pair[1]) in known:  # a middle
+                for meant in known:
+                    rest = [*zip(cells, meant, strict=True)]
+                    yield _row(rest, cells, False)
+            for meant in known if pair not in known else ():
+                same = [_same(cell.value, right) for cell, right in zip(cells, meant, strict=True)]
+                if same.count(True) == 1:
+                    k = same.index(False)
+                    if abs(cells[k].value) not in own:
+                        yield cells[k].edit(meant[k])
     for one, other in turned if len(straight) >= len(turned) else ():
-        yield _row(0, [(one, other.value), (other, one.value)], (one, other), True)
+        yield _row([(one, other.value), (other, one.value)], (one, other), True)
 
 
 def _from_zero(found: dict[int, _Cell], count: int) -> dict[int, _Cell]:
@@ -263,9 +275,7 @@ class _Cell:
         )
 
 
-def _row(
-    k: int, some: Sequence[tuple[_Cell, float]], whole: Sequence[_Cell], alone: bool
-) -> ProgramEdit:
+def _row(some: Sequence[tuple[_Cell, float]], whole: Sequence[_Cell], alone: bool) -> ProgramEdit:
     """Several numbers of a row; exchanged, where all else of their columns is right."""
     first = some[0][0]
     put = {id(cell): right for cell, right in some}
@@ -278,8 +288,10 @@ def _row(
     both = [(cell.place, right) for cell, right in some if cell.place is not None]
     changes = [change for edit in together(both) for change in edit.changes]
     told = (", ".join(map(shown, old)), ", ".join(map(shown, new)))
-    node, several = first.place.node, tuple(changes)
-    return ProgramEdit(DATA, several, kind, _COST, node, (k,), exchanged=told, of_the_arm=True)
+    node, several, place = first.place.node, tuple(changes), first.place.place
+    row = next((k for k, at in enumerate(place) if isinstance(at, int)), -1)
+    whole_row = place[: row + 1]
+    return ProgramEdit(DATA, several, kind, _COST, node, whole_row, exchanged=told, of_the_arm=True)
 
 
 def typed(value: float) -> ast.expr:
@@ -311,11 +323,17 @@ def _columns_of(trial: Trial, observed: Observed) -> dict[Any, dict[int, _Cell]]
     Calls of one function of its own, as many as there are links, are the rows of a table too.
     """
     found: dict[Any, dict[int, _Cell]] = {}
+    alike: dict[type, list[Any]] = {}
+    for name in trial.program.data:
+        alike.setdefault(type(trial.space.get(name)), []).append(name)
     for leaf in leaves(trial):
         column, at = _column(leaf.node, leaf.place)
+        kind = type(trial.space.get(leaf.node))
+        if at is None and kind in trial.classes.values() and leaf.node in alike.get(kind, ()):
+            column, at = (kind, leaf.place), alike[kind].index(leaf.node)  # objects, one each
         if at is not None:
             found.setdefault(column, {})[at] = _Cell(float(leaf.value), leaf)
-    own = {part.name for part in trial.program.parts}
+    own = {part.name for part in trial.program.parts} | {one.__name__ for one in trial.classes}
     for part, tree in enumerate(trial.trees):
         rows: dict[str, list[ast.expr]] = {}
         for call in sorted(_calls(tree), key=lambda one: (one.lineno, one.col_offset)):

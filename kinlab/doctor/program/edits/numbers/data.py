@@ -27,11 +27,13 @@ _ROWS = 8
 """Rows of a table, and numbers of a row, of which any two may have been exchanged."""
 _AXIS = 1.06
 """Cost of another direction for an axis: no row of lengths has but one of them."""
+_TURNED = 1.03
+"""Cost of a quarter turn the other way."""
 _PAIR = 2
 """Numbers that are reversed where they are exchanged."""
 _DIGITS = 10
 """Significant digits that somebody types at most."""
-_GRAVITY = re.compile(r"_*(?:g(?:_?(?:vec|0))?$|grav)", re.IGNORECASE)
+GRAVITY = re.compile(r"_*(?:g(?:_?(?:vec|0))?$|grav)", re.IGNORECASE)
 """What the acceleration of gravity is called."""
 _NAMES = 12
 """Names of numbers of which any two may have been exchanged."""
@@ -43,7 +45,7 @@ def of_data(trial: Trial) -> Iterator[ProgramEdit]:
         if leaf.value:
             # a name for a negative number: lengths and masses are none
             negative = leaf.value < 0 and not leaf.place
-            down = leaf.place and _GRAVITY.match(str(leaf.node))  # up or down
+            down = leaf.place and GRAVITY.match(str(leaf.node))  # up or down
             yield leaf.edit(-leaf.value, "sign", 0.99 if negative or down else 1.05)
             yield leaf.edit(2 * leaf.value, "factor", 1.2)
             yield leaf.edit(leaf.value / 2, "factor", 1.2)
@@ -57,7 +59,8 @@ def of_data(trial: Trial) -> Iterator[ProgramEdit]:
     for name in trial.program.data:
         value = trial.space[name]
         for new, kind in _whole(value):
-            yield ProgramEdit(DATA, (FieldChange(trial.space, name, new),), kind, 1.1, name)
+            cost = _TURNED if _is_quarter_turn(value) else 1.1
+            yield ProgramEdit(DATA, (FieldChange(trial.space, name, new),), kind, cost, name)
         for key, row in value.items() if isinstance(value, dict) else ():
             for new, kind in _whole(row):
                 change = FieldChange(value, key, new)
@@ -69,6 +72,12 @@ def of_data(trial: Trial) -> Iterator[ProgramEdit]:
     for kept in trial.classes.values():
         yield from _exchanged(kept.__name__, kept, ())
     yield from _names_exchanged(trial)
+
+
+def _is_quarter_turn(value: Any) -> bool:
+    """Whether it turns vectors of the plane by a right angle."""
+    square = isinstance(value, np.ndarray) and value.shape == (_PAIR, _PAIR)
+    return square and np.array_equal(abs(value), [[0, 1], [1, 0]]) and not (value + value.T).any()
 
 
 def _kinds_of_joints(trial: Trial) -> Iterator[ProgramEdit]:

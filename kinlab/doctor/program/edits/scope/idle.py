@@ -153,7 +153,7 @@ def uncalled(
     every = _calls(trial)
     known = {observed.shape(x) for x in every if called(x) in own}
     shapes = {_VECTOR, _MATRIX, _TWISTS, *(one for one in known if one)}
-    for name in _not_called(trial, {called(x) for x in every}):
+    for name in not_called(trial):
         for given in at_hand:
             call = ast.Call(named(name), [named(given)], [])
             for shape in sorted(shapes):
@@ -192,11 +192,11 @@ def _calls(trial: Trial) -> list[ast.Call]:
     return [x for one in trial.trees for x in nodes(one) if isinstance(x, ast.Call)]
 
 
-def _not_called(trial: Trial, called_: Container[str]) -> Iterator[str]:
+def not_called(trial: Trial) -> Iterator[str]:
     """The module's functions of one argument that the program does not call, and could."""
-    program = trial.program
+    program, known_ = trial.program, {called(x) for x in _calls(trial)}
     for name, value in program.space.items():
-        if name in called_ or not isinstance(value, FunctionType):
+        if name in known_ or not isinstance(value, FunctionType):
             continue
         own = value.__module__ in program.modules and value.__name__ == name
         known = {part.name for part in program.parts}

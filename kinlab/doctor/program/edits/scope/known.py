@@ -108,6 +108,7 @@ class Knowledge:
         calls = [node for node in nodes(tree) if isinstance(node, ast.Call)]
         self.functions = {p.name: len(p.tree.args.args) for p in parts[1:] if p.owner is None}
         self.called = {p.name for p in parts[1:]}
+        self.uncalled = [*idle.not_called(trial)]
         self._angular = {name for name in ANGLES if callable(space.get(name))}
         self.has_numpy = functions.has_numpy(space)
         self.pi = functions.pi_of(space)

@@ -25,6 +25,8 @@ _LED = 1.01
 """Cost of a difference the other way, which an axis or a rate is crossed with."""
 _QUADRANT = 0.99
 """Cost of the angle of two sides for that of their quotient."""
+_FEWER = 1.12
+"""Cost of another function of the program's own that asks for less."""
 _FAMILIES = (
     ("zeros", "ones"),
     ("array", "asarray", "cumsum"),
@@ -96,9 +98,13 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
         method = ast.Attribute(node.func.value, "insert" if first else "append", ast.Load())
         yield here.instead(ast.Call(method, [*first, node.args[-1]], []), "order", 1.12)
     if isinstance(node.func, ast.Name):
-        for other, count in scope.functions.items():
+        uncalled = dict.fromkeys(scope.uncalled, 1)  # how many arguments they ask for
+        for other, count in (scope.functions | uncalled).items():
             if other != name and count == len(node.args) and count == scope.functions.get(name):
                 yield here.within(node, "func", ast.Name(other, ast.Load()), "function", 1.1)
+            elif other != name and name in scope.functions and 0 < count < len(node.args):
+                fewer = ast.Call(ast.Name(other, ast.Load()), node.args[:count], [])
+                yield here.instead(fewer, "function", _FEWER)
         if scope.functions.get(name, 0) == len(node.args) + 1 and not node.keywords:
             for given in scope.shapes:  # the last one has a default
                 if given not in scope.counters:

@@ -21,9 +21,32 @@ _OPPOSITE: dict[type[ast.cmpop], type[ast.cmpop]] = {
 }
 
 
+_KINDS = (
+    ("r", "p"),
+    ("revolute", "prismatic"),
+    ("rev", "pris"),
+    ("rot", "lin"),
+    ("rotary", "linear"),
+    ("hinge", "slide"),
+    ("hinge", "slider"),
+)
+"""What the two kinds of joints are called."""
+_KIND = 1.03
+"""Cost of the other kind of joint in a condition."""
+
+
 def of_comparison(here: Here) -> Iterator[ProgramEdit]:
     node = here.node
     if len(node.ops) != 1:
+        return
+    letter = getattr(node.comparators[0], "value", None)
+    if isinstance(letter, str):  # the kind of a joint
+        for other_kind in _other_kinds(letter):
+            kind = [ast.Constant(other_kind)]
+            yield here.within(node, "comparators", kind, "condition", _KIND)
+        if isinstance(node.ops[0], ast.Eq | ast.NotEq):
+            turned = ast.Eq() if isinstance(node.ops[0], ast.NotEq) else ast.NotEq()
+            yield here.within(node, "ops", [turned], "condition", _KIND + 0.03)
         return
     pairs = {ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt}
     other = pairs.get(type(node.ops[0]))
@@ -37,6 +60,15 @@ def of_comparison(here: Here) -> Iterator[ProgramEdit]:
         for new in (ast.Eq(), ast.LtE(), ast.GtE()):
             if type(new) is not type(node.ops[0]):
                 yield here.within(node, "ops", [new], "condition", 1.12)
+
+
+def _other_kinds(kind: str) -> list[str]:
+    """The other of two kinds of joints, written as one is."""
+    pairs = [pair for pair in _KINDS if kind.lower() in pair]
+    others = [one for pair in pairs for one in pair if one != kind.lower()]
+    if kind.isupper():
+        return [one.upper() for one in others]
+    return [one.capitalize() if kind[:1].isupper() else one for one in others]
 
 
 def of_comparisons(here: Here) -> Iterator[ProgramEdit]:

@@ -12,7 +12,7 @@ from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.constants import OF_RODS
 from kinlab.doctor.program.edits.single.entries import is_of_three
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import Here, ProgramEdit
+from kinlab.doctor.program.places import Here, ProgramEdit, root
 
 _FEW = 8
 """Attributes among which a wrong one is looked for early."""
@@ -20,6 +20,10 @@ _OF_ITS_MASS = 0.015
 """What it costs less where the mass of its link stands beside it."""
 _OF_ROD = 0.04
 """What that costs more in a rod's moment of inertia, whose number is as soon mistaken."""
+_OF_ANOTHER = 0.1
+"""What the distance of a centre costs more that would carry the mass of another link alone."""
+_ENTRY = 1.16
+"""Cost of an entry of what stands in the same line, for a name."""
 _HALF = 1.03
 """Cost of a length for the distance of the centre, where that is half of it, or that for it."""
 _IN_LINE = 1.12
@@ -50,11 +54,14 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
             if scope.are_halves(other, node.id):
                 cost = _HALF + _OF_ROD * _in_a_rods_moment(here)
                 cost -= _OF_ITS_MASS * _is_of_the_mass(here, other)
+                cost += _OF_ANOTHER * _is_a_centre_of_another(here, scope, other)
             elif _carries_another(here, other):
                 cost = _HALF
             if other == across and {other, node.id} <= scope.sines:
                 kind, cost = "sin/cos", 1.04
             yield here.instead(ast.Name(other, ast.Load()), kind, cost)
+    if shape == ():
+        yield from _entries_beside(here, scope)
     if shape and not isinstance(here.parent, ast.Subscript | ast.Attribute):
         for text, entry in scope.simple(shape):  # an entry of a list by a counter
             if isinstance(entry, ast.Subscript) and text != node.id:
@@ -64,6 +71,21 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
             if other != node.id and entries == shape[1:] and scope.shapes.get(other) != shape:
                 cost = 1.15 if _alike(other, node.id) else 1.2
                 yield here.instead(ast.Name(other, ast.Load()), "name", cost)
+
+
+def _entries_beside(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """An entry of what stands in the same line, for a name: ``crank["c"][i]`` for l1."""
+    read = scope.names_in(statement_of(here.above))
+    for _text, entry in scope.simple(()):
+        if isinstance(entry, ast.Subscript) and root(entry) in read:
+            yield here.instead(entry, "name", _ENTRY)
+
+
+def _is_a_centre_of_another(here: Here, scope: Scope, name: str) -> bool:
+    """Whether a centre's distance, half a length, would carry the mass of another link alone."""
+    masses = {one[len(_letters(one)) :] for one in _masses_beside(here)}
+    half = abs(scope.level_of(name)) < abs(scope.level_of(here.node.id))
+    return half and bool(masses) and name[len(_letters(name)) :] not in masses
 
 
 def _carries_another(here: Here, length: str) -> bool:
@@ -81,13 +103,16 @@ def _is_of_the_mass(here: Here, name: str) -> bool:
 
 
 def _masses_beside(here: Here) -> list[str]:
-    """The masses that a name is multiplied with."""
-    product: ast.expr = here.node
+    """The masses that a name is multiplied with, alone or in a sum."""
+    found: list[ast.expr] = []
+    inner: ast.AST = here.node
     for above in reversed(here.above):
-        if not isinstance(above, ast.BinOp) or not isinstance(above.op, ast.Mult):
+        if isinstance(above, ast.BinOp) and isinstance(above.op, ast.Mult):
+            found += factors(above.left if above.right is inner else above.right)
+        elif not isinstance(above, ast.BinOp | ast.UnaryOp):
             break
-        product = above
-    parts = (x.operand if isinstance(x, ast.UnaryOp) else x for x in factors(product))
+        inner = above
+    parts = (x.operand if isinstance(x, ast.UnaryOp) else x for x in found)
     return [x.id for x in parts if isinstance(x, ast.Name) and x.id[0] in "mM"]
 
 

@@ -10,7 +10,7 @@ from typing import Any
 from kinlab.doctor.bytecode.syntax import called, copied, shallow
 from kinlab.doctor.program.edits.numbers.data import moved_on, other_words
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import Here, ProgramEdit, number
+from kinlab.doctor.program.places import Here, ProgramEdit, follow, number
 
 _LONGEST = 6
 """Entries of a list of which any two may have been exchanged."""
@@ -32,6 +32,8 @@ _LIKE_ANOTHER = 1.06
 """Cost of an entry that is made as another one of its row is."""
 _PRODUCTS = 1.08
 """Cost of the other sign of all products of inertia."""
+_QUARTER = 0.99
+"""Cost of a vector's normal on its other side."""
 _HALVED = 1.04
 """Cost of the halves of a twist, or of a wrench, for one another."""
 
@@ -52,7 +54,8 @@ def of_sequence(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
     turned = [_opposite(one) for one in elements]
     if sum(one is not old for one, old in zip(turned, elements, strict=True)) >= _PAIR:
         unpacked = isinstance(here.node, ast.Tuple) and isinstance(here.parent, ast.Assign)
-        yield here.within(here.node, "elts", turned, "sign", 1.25 if unpacked else 1.1)
+        cost = 1.25 if unpacked else _QUARTER if _is_normal(elements) else 1.1
+        yield here.within(here.node, "elts", turned, "sign", cost)
     slid = _as_of_a_slide(elements)
     if slid:
         yield here.within(here.node, "elts", slid, "kind of joint", _SLIDE)
@@ -187,6 +190,13 @@ def _of_axes(rows: Sequence[ast.expr]) -> list[list[ast.expr]]:
     entries = [one.elts for one in rows if isinstance(one, ast.List | ast.Tuple)]
     square = len(entries) == len(rows) and {len(rows), *map(len, entries)} == {_THREE}
     return entries if square else []
+
+
+def _is_normal(elements: Sequence[ast.expr]) -> bool:
+    """Whether two coordinates are exchanged, and one has a minus: ``[-d[1], d[0]]``."""
+    minus = [isinstance(one, ast.UnaryOp) and isinstance(one.op, ast.USub) for one in elements]
+    parts = [getattr(one, "operand", one) for one in elements]
+    return len(parts) == _PAIR and sum(minus) == 1 and follow(parts[0], parts[1])
 
 
 def _signs_of_two(here: Here, rows: Sequence[ast.expr]) -> Iterator[ProgramEdit]:
