@@ -179,20 +179,24 @@ def lines(
         causes = [cause_of(one, search) for one in told]
         pairs = zip(causes, told, strict=True)
         hidden = ((cause, kind) for cause, one in pairs if (kind := _hiding(one, search)))
-        sure = [x for x, one in zip(causes, told, strict=True) if _is_sure(one)]
+        sure = [x for x, one in zip(causes, told, strict=True) if _is_sure(one, search)]
         stepping = search.asked.differences
         yield WrongLines(
             causes, search.written_out, numbers, None, odd, stepping, (*sure,), (*hidden,)
         )
 
 
-def _is_sure(repair: ProgramRepair) -> bool:
+def _is_sure(repair: ProgramRepair, search: LineSearch) -> bool:
     """Whether one edit leaves nothing of a small error that could be one of digits.
 
-    How often an iteration is gone through, and what damps it, are such as leave little.
+    Of several each is to put a number of the robot's in. How often an iteration is gone through,
+    and what damps it, are such as leave little.
     """
-    if len(repair.edits) > 1 or repair.error > TOLERANCES.formula_agrees:
+    if repair.error > TOLERANCES.formula_agrees:
         return False
+    if len(repair.edits) > 1:
+        put = [None if one.numbers is None else one.numbers[1] for one in repair.edits]
+        return all(x is not None and is_own(search.case.robot, x) for x in put)
     (edit,) = repair.edits
     if edit.kind in _ENDING:
         return False

@@ -66,6 +66,8 @@ _GIVEN_ON = 1.12
 """Cost of a sign of what a function only gives on, or an object only keeps."""
 _KEPT = 1.22
 """Cost of a factor of what an object only keeps."""
+_UNPACKED = 1.2
+"""Cost of a sign of all that is given to several names at once."""
 _AS_SET = 1.05
 """Cost of a sign in a row of what was set before."""
 _DIVIDED = 1.07
@@ -134,6 +136,8 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         given_on = here.part and isinstance(outer, ast.Return) and isinstance(node, ast.Name)
         if alone and (_keeps(parent, node) or given_on):
             cost = _GIVEN_ON
+        if alone and _is_unpacked(here):
+            cost = _UNPACKED
         if entry and (_is_counted(parent) or _is_alone(parent, node)):
             cost = _AS_SET
         yield here.instead(chains.opposite(node), "sign", cost)

@@ -179,6 +179,13 @@ def _about_a_line(call: Call) -> Iterator[Array]:
     yield _pose(turn, point - turn @ point)
 
 
+def _less_turns(call: Call) -> Iterator[Array]:
+    """An angle without whole turns, about nought or from it."""
+    angle = float(call[0][0])
+    yield np.array(np.arctan2(np.sin(angle), np.cos(angle)))
+    yield np.array(angle % (2 * np.pi))
+
+
 def _inverse(call: Call) -> Iterator[Array]:
     if abs(np.linalg.det(call[0][0])) > TOLERANCES.same_relation:
         yield np.asarray(np.linalg.inv(call[0][0]), dtype=float)
@@ -187,6 +194,7 @@ def _inverse(call: Call) -> Iterator[Array]:
 
 
 _KNOWN: dict[tuple[tuple[Shape, ...], Shape], Known] = {
+    (((),), ()): _less_turns,
     (((3,),), (3, 3)): lambda call: iter([_cross(call[0][0])]),
     (((),), (2, 2)): _of_angle,
     (((),), (3, 3)): _of_angle,
