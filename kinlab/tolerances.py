@@ -228,8 +228,9 @@ class Tolerances:
     solved_angle: float = 1e-7
     """rad. Slack of an angle that is solved for from exact poses."""
 
-    still: float = 1e-9
-    """How far a joint moves at most over poses in which it does not move, rad or m."""
+    still: float = 1e-4
+    """How far a joint moves at most over poses in which it does not move, rad or m: an encoder's
+    last digits are no motion."""
 
     last_digit: float = 1e-6
     """Share of a size below which two numbers of a body differ in their last digits alone."""

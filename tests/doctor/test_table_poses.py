@@ -190,3 +190,37 @@ def test_noise_does_not_hide_that_joints_rest():
     T[:, :3, 3] += 1e-4 * np.random.default_rng(1).standard_normal((len(T), 3))
     found = kl.diagnose_table(PUMA, poses=(q, T))
     assert any("joints 2, 3, 4, 5 and 6 do not move" in note for note in found.notes)
+
+
+@pytest.mark.parametrize("mm", [0.0, 0.1])
+@pytest.mark.parametrize("mine", [PUMA, row(PUMA, 4, d=0.4)], ids=["right", "a slip"])
+def test_a_pose_that_is_far_off_is_left_out_and_named(mm, mine):
+    q, T = measured(PUMA, mm=mm, deg=0.1 * mm)
+    T[16, :3, 3] += (0.03, 0.0, 0.0)
+    found = kl.diagnose_table(mine, poses=(q, T))
+    assert found.states == 39
+    assert "pose 17 is left out" in str(found)
+    assert found.agrees == (mine is PUMA)
+    assert mine is PUMA or [(c.row, c.column) for c in found.causes] == [(4, "d")]
+
+
+def test_what_noise_hides_is_said():
+    poses = measured(PUMA, mm=1.0, deg=0.05)
+    right = kl.diagnose_table(PUMA, poses=poses)
+    hidden = right.clear["hidden_length"]
+    assert right.agrees and "would not show" in str(right)
+    assert 0.0005 < hidden < 0.005
+    beyond = row(PUMA, 3, a=PUMA.links[2].a + 2 * hidden)
+    assert not kl.diagnose_table(beyond, poses=poses).agrees
+
+
+def test_an_encoders_last_digits_are_no_motion():
+    rng = np.random.default_rng(4)
+    q = rng.uniform(-2.0, 2.0, (40, 6))
+    q[:, 3] = 0.3 + rng.normal(0.0, 1e-5, 40)
+    T = kl.fk(kl.Robot.from_dh(PUMA), q)
+    right = kl.diagnose_table(PUMA, poses=(q, T))
+    assert right.agrees and right.verdict == "agrees at these poses"
+    assert right.unseen_rows == (3, 4) and not {3, 4} & {*right.certain_rows}
+    wrong = kl.diagnose_table(row(PUMA, 4, d=0.4), poses=(q, T))
+    assert wrong.sentence.startswith("the poses allow, and do not prove: ")

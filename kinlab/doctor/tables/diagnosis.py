@@ -24,6 +24,7 @@ from kinlab.doctor.tables.reference.against import (
     read_reference,
 )
 from kinlab.doctor.tables.result import TableDiagnosis, joined
+from kinlab.doctor.tables.result import told as result_told
 from kinlab.doctor.tables.search import explain
 from kinlab.doctor.tables.words import SIX, Cause, listed
 from kinlab.errors import InertiaError, KinlabWarning, OptionError, StructureError, TableError
@@ -121,6 +122,10 @@ def _judge(table: DHTable, reference: Reference, bodies: bool, notes: list[str])
     agreed = before <= reference.target.tolerance
     found = [Reading(chain)] if agreed else _explained(chain, reference, (1,))
     if not found and reference.axes is None and table.n == reference.n:
+        bad = table_noise.standing_out(table, reference)
+        if bad:
+            fewer = table_noise.without(reference, bad)
+            return _judge(table, fewer, bodies, [*notes, _left_out(bad)])
         noisy = table_noise.judge(table, reference, notes)
         if noisy is not None:
             return noisy
@@ -157,7 +162,7 @@ def _told(
     chain = Chain.of(table)
     common = reference.facts(table, before, notes)
     if not found:
-        unseen = _unseen(chain, reference)
+        unseen = reference.unseen(chain)
         sure = tuple(i for i in table_zeros.sure_rows(chain, reference) if i not in unseen)
         doubt = tuple(i for i in range(1, table.n + 1) if i not in sure)
         rows_: dict[str, Any] = {"certain_rows": sure, "rows_in_question": doubt}
@@ -193,10 +198,10 @@ def _told(
     differences = _frames_told(causes, chain)
     wrong = {row for cause in causes for row in cause.rows}
     whole = any(c.row is None and c.column in ("convention", "units", "order") for c in causes)
-    unseen = _unseen(chain, reference)
+    unseen = reference.unseen(chain)
     maybe = unseen.union(*(cause.rows for option in options for cause in option[1]))
     rest = tuple(i for i in range(1, repaired.n + 1) if i not in maybe and not whole)
-    told = joined(causes)
+    told = result_told(causes, bool(unseen))
     if reference.axes is None and any(cause.column == "units" for cause in causes):
         units = _("it may as well be the poses that are in another unit than metres")
         common["notes"] = (*common["notes"], units)
@@ -223,18 +228,19 @@ def _told(
     )
 
 
-def _unseen(chain: Chain, reference: Reference) -> set[int]:
-    """The rows that poses tell nothing for sure of: those around the axes of joints at rest."""
-    if reference.axes is not None:
-        return set()
-    around = (0, 1) if chain.modified else (-1, 0)
-    rows = {joint + k for joint in reference.still for k in around}
-    return {row for row in rows if 1 <= row <= chain.n}
+def _left_out(bad: list[int]) -> str:
+    """What is said of poses that are far off."""
+    said = ngettext(
+        "pose {poses} is left out: it is off by far more than the others",
+        "poses {poses} are left out: they are off by far more than the others",
+        len(bad),
+    )
+    return said.format(poses=listed([k + 1 for k in bad]))
 
 
 def _at_rest(table: DHTable, reference: Reference) -> list[str]:
     """What is said of joints that move in none of the poses."""
-    unseen = _unseen(Chain.of(table), reference)
+    unseen = reference.unseen(Chain.of(table))
     if not unseen:
         return []
     still = ngettext(

@@ -10,7 +10,7 @@ fits as well is listed.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -31,7 +31,7 @@ from kinlab.doctor.tables.chain import (
 from kinlab.doctor.tables.readings import Reading, readings
 from kinlab.doctor.tables.reference.against import Reference
 from kinlab.doctor.tables.reference.target import Target
-from kinlab.doctor.tables.result import TableDiagnosis, joined
+from kinlab.doctor.tables.result import TableDiagnosis, told
 from kinlab.doctor.tables.words import pose_cause
 from kinlab.host.language import _
 from kinlab.model.dh import DHTable
@@ -48,6 +48,10 @@ states) times the square root of their number, before it is called a slip."""
 _AS_GOOD = 12.0
 """Difference of chi-square below which two explanations count as equally good."""
 
+
+_STANDS_OUT, _FARTHER = 6.0, 3.0
+"""How far a pose is off whose fit stands out: as often as the median, and as the worst other one
+where it is not fitted."""
 
 _CUTS = (1e-6, 1e-4, 1e-3, 1e-2, 1e-1)
 """Shares of the largest singular value below which a direction of the fit is left alone."""
@@ -76,16 +80,10 @@ def judge(table: DHTable, reference: Reference, notes: Sequence[str]) -> TableDi
     """
     chain, target = Chain.of(table), reference.target
     numbers = 6 * len(target.q)
-    if numbers < 2 * (4 * chain.n + 12):
+    if _are_few(chain, target):
         return None
-    plain = Reading(chain)
-    candidates = _candidates(plain, target)
-    rough = (1e-3 * target.size, 1e-3)
-    starts = sorted(candidates, key=lambda one: _chi(one.chain, target, rough))[:4]
-    full = min(
-        (_calibrated(one.chain, target) for one in [plain, *starts]),
-        key=lambda one: _chi(one, target, rough),
-    )
+    candidates = _candidates(Reading(chain), target)
+    full = _full(chain, candidates, target)
     sigma, rank = _noise(full, target)
     if max(sigma[0] / target.size, sigma[1]) < TOLERANCES.exact_poses:
         return None
@@ -100,7 +98,11 @@ def judge(table: DHTable, reference: Reference, notes: Sequence[str]) -> TableDi
     common["clear"], names = clear, {"table": table.name, "reference": reference.name}
     if written <= room:
         said = _("{table} agrees with {reference} within their noise").format(**names)
-        right: dict[str, Any] = {"repaired": table, "same_arm": True, "certain_rows": rows}
+        length, angle = _hidden(full, target, sigma, room)
+        clear |= {"hidden_length": float(length), "hidden_angle_deg": float(np.degrees(angle))}
+        unseen = reference.unseen(chain)
+        sure = tuple(i for i in rows if i not in unseen)
+        right: dict[str, Any] = {"repaired": table, "same_arm": not unseen, "certain_rows": sure}
         return TableDiagnosis(agrees=True, sentence=said, **right, **common)
     effect = float(np.sqrt((written + numbers) / numbers))
     fits = _fitted(candidates, chain, target, sigma)
@@ -121,7 +123,7 @@ def judge(table: DHTable, reference: Reference, notes: Sequence[str]) -> TableDi
     wrong = {row for cause in first.causes for row in cause.rows}
     return TableDiagnosis(
         agrees=False,
-        sentence=joined(first.causes),
+        sentence=told(first.causes, bool(reference.unseen(chain))),
         causes=first.causes,
         alternatives=tuple(fit.reading.causes for fit in equal[1:]),
         repaired=first.chain.apply(table),
@@ -130,6 +132,72 @@ def judge(table: DHTable, reference: Reference, notes: Sequence[str]) -> TableDi
         certain_rows=tuple(i for i in rows if wrong and i not in wrong),
         **common,
     )
+
+
+def standing_out(table: DHTable, reference: Reference) -> list[int]:
+    """The poses that are off by far more than the others can be, counted from 0.
+
+    Each is left out of a fit of all cells, base and tool, beside which it is off all the same: a
+    marker that was lost, a row that was typed wrong. At most a tenth of all.
+    """
+    chain, whole = Chain.of(table), reference.target
+    kept = np.arange(len(whole.q))
+    bad: list[int] = []
+    for _turn in range(max(1, len(kept) // 10)):
+        target = _some(whole, kept)
+        if _are_few(chain, _some(whole, kept[1:])):
+            break
+        misses = _misses(_full(chain, _candidates(Reading(chain), target), target), target)
+        worst = int(np.argmax(misses))
+        rest = np.delete(kept, worst)
+        if misses[worst] <= _STANDS_OUT * max(np.median(misses), TOLERANCES.exact_poses):
+            break
+        fewer = _some(whole, rest)
+        fit = _full(chain, _candidates(Reading(chain), fewer), fewer)
+        most = max(float(np.max(_misses(fit, fewer))), TOLERANCES.exact_poses)
+        if _misses(fit, _some(whole, kept[[worst]]))[0] <= _FARTHER * most:
+            break
+        bad.append(int(kept[worst]))
+        kept = rest
+    return sorted(bad)
+
+
+def without(reference: Reference, bad: Sequence[int]) -> Reference:
+    """The same poses but for some."""
+    kept = np.delete(np.arange(len(reference.target.q)), bad)
+    return replace(reference, target=_some(reference.target, kept))
+
+
+def _some(target: Target, which: Any) -> Target:
+    return Target(target.q[which], target.poses[which], target.tolerance)
+
+
+def _are_few(chain: Chain, target: Target) -> bool:
+    """Whether poses are too few for a fit of all cells, base and tool."""
+    return 6 * len(target.q) < 2 * (4 * chain.n + 12)
+
+
+def _full(chain: Chain, candidates: list[Reading], target: Target) -> Chain:
+    """The best fit of all cells, base and tool, from the table and the likeliest candidates."""
+    rough = (1e-3 * target.size, 1e-3)
+    starts = sorted(candidates, key=lambda one: _chi(one.chain, target, rough))[:4]
+    fits = (_calibrated(one, target) for one in [chain, *(x.chain for x in starts)])
+    return min(fits, key=lambda one: _chi(one, target, rough))
+
+
+def _misses(chain: Chain, target: Target) -> Array:
+    """How far each pose is off, lengths over the arm's size, (N,)."""
+    rest = _rest(frames(chain, target.q)[:, -1], target)
+    out: Array = np.linalg.norm(rest * np.repeat([1.0 / target.size, 1.0], 3), axis=1)
+    return out
+
+
+def _hidden(chain: Chain, target: Target, sigma: tuple[float, float], room: float) -> Array:
+    """The largest slips of one length, and of one angle, that would not show: m and rad."""
+    slopes = _slopes(chain, frames(chain, target.q))[:, : 4 * chain.n] / np.repeat(sigma, 3)
+    sizes = np.sqrt(np.sum(slopes * slopes, axis=(0, 2))).reshape(chain.n, 4)
+    seen = np.sqrt(room) / np.where(sizes > TOLERANCES.exact_poses, sizes, np.inf)
+    return np.array([np.max(seen[:, [A, D]]), np.max(seen[:, [ALPHA, THETA]])])
 
 
 def _candidates(plain: Reading, target: Target) -> list[Reading]:

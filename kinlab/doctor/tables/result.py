@@ -38,6 +38,7 @@ class TableDiagnosis(Rows):
         clear: with measured poses: how far the slip stands clear of the noise.
         evidence: further lines.
         notes: what was not compared, and why.
+        unseen_rows: rows around joints that rest in all the poses: of these nothing is sure.
     """
 
     agrees: bool
@@ -58,12 +59,13 @@ class TableDiagnosis(Rows):
     clear: dict[str, float] = field(default_factory=dict)
     evidence: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+    unseen_rows: tuple[int, ...] = ()
 
     @property
     def verdict(self) -> str:
-        """``"agrees"``, ``"differs"`` or ``"differs, cause unknown"``."""
+        """``"agrees"``, ``"agrees at these poses"``, ``"differs"``, or ``"..., cause unknown"``."""
         if self.agrees:
-            return N_("agrees")
+            return N_("agrees at these poses") if self.unseen_rows else N_("agrees")
         return N_("differs") if self.causes else N_("differs, cause unknown")
 
     @property
@@ -113,7 +115,12 @@ class TableDiagnosis(Rows):
     def _noise(self) -> str:
         """The noise in words."""
         c = self.clear
-        if "effect" not in c:
+        if "hidden_length" in c:
+            told = _(
+                "noise {position:.3g} mm, {angle:.3g} deg: in one cell a slip of up to "
+                "{length:.2g} mm, or {turn:.2g} deg, would not show"
+            )
+        elif "effect" not in c:
             told = _("noise {position:.3g} mm, {angle:.3g} deg")
         elif "runner_up" not in c:
             told = _(
@@ -125,6 +132,8 @@ class TableDiagnosis(Rows):
                 "noise, the next best cause leaves {next:.3g} times the noise"
             )
         size = {"position": 1000 * c["sigma_position"], "angle": c["sigma_angle_deg"]}
+        size["length"] = 1000 * c.get("hidden_length", 0.0)
+        size["turn"] = c.get("hidden_angle_deg", 0.0)
         return told.format(**size, effect=c.get("effect"), next=c.get("runner_up"))
 
     def columns(self) -> dict[str, Any]:
@@ -197,8 +206,17 @@ class TableDiagnosis(Rows):
             "clear": dict(self.clear),
             "evidence": list(self.evidence),
             "notes": list(self.notes),
+            "unseen_rows": list(self.unseen_rows),
             "repaired": self.repaired.to_toml() if self.repaired is not None else None,
         }
+
+
+def told(causes: tuple[Cause, ...], unseen: bool) -> str:
+    """The causes in one sentence, which is no proof where poses do not see some rows."""
+    said = joined(causes)
+    if unseen and causes:
+        return _("the poses allow, and do not prove: {causes}").format(causes=said)
+    return said
 
 
 def joined(causes: tuple[Cause, ...]) -> str:

@@ -93,6 +93,14 @@ class Reference:
         moved = np.ptp(self.target.q, axis=0)
         return tuple(int(k) + 1 for k in np.flatnonzero(moved <= TOLERANCES.still))
 
+    def unseen(self, mine: Chain) -> set[int]:
+        """The rows that poses tell nothing for sure of: those around the axes of joints at rest."""
+        if self.axes is not None:
+            return set()
+        around = (0, 1) if mine.modified else (-1, 0)
+        rows = {joint + k for joint in self.still for k in around}
+        return {row for row in rows if 1 <= row <= mine.n}
+
     def facts(self, mine: DHTable, before: float, notes: Sequence[str]) -> dict[str, Any]:
         """What every diagnosis of a table says of the comparison; ``before``: its error."""
         return {
@@ -102,6 +110,7 @@ class Reference:
             "error_before": before,
             "tolerance": self.target.tolerance,
             "notes": tuple(notes),
+            "unseen_rows": tuple(sorted(self.unseen(Chain.of(mine)))),
         }
 
 
