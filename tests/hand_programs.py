@@ -513,7 +513,11 @@ def lines_named(sentence: str) -> list[int]:
 
 
 def repaired(text: str, sentence: str):
-    """Every program that follows from a sentence, as what it defines: fresh name spaces."""
+    """Every program that follows from a sentence, as what it defines: fresh name spaces.
+
+    Of two places that do equally the first is taken.
+    """
+    sentence = sentence.partition("; or else ")[0]
     trees = [ast.parse(text)]
     for found in _SAID.finditer(sentence):
         trees = [after for tree in trees for after in _with(tree, found)]

@@ -77,6 +77,8 @@ class Woven:
         self.data: list[tuple[int, FieldChange]] = []
         self.placed: set[int] = set()
         self._at: list[tuple[int, list[Key]]] = []
+        self._loops: list[tuple[int, ast.AST, set[str]]] = []
+        self._reads: list[tuple[int, ast.AST, set[str]]] = []
         for number, alike in enumerate(edits):
             for edit in alike:
                 if self._put(number, edit):
@@ -103,6 +105,7 @@ class Woven:
             self._sites[(id(parent), name, k)].append((number, new))
             self._mark(parent)
             self._at.append((number, self._path((parent, name, k))))
+            self._reads.append((number, parent, {*names(new)}))
         return True
 
     def _put_apart(self, number: int, change: FieldChange) -> bool:
@@ -118,6 +121,8 @@ class Woven:
             return False
         if isinstance(statement, ast.For) and {*names(statement.target)} & {*names(new)}:
             return False  # from where the counter was left, which other lanes have had since
+        if isinstance(statement, ast.For):
+            self._loops.append((number, statement, {*names(statement.target)}))
         self._ways[id(statement)].append((number, new))
         self._mark(statement)
         self._at.append((number, [(id(statement), name, None)]))
@@ -183,7 +188,7 @@ class Woven:
             spot = self._above[id(parent)]
 
     def inside(self) -> Any:
-        """Which edits are in one another, (E, E)."""
+        """Which edits are in one another, or read where the other's loop left off, (E, E)."""
         found = np.zeros((self._count, self._count), dtype=bool)
         at: dict[Key, list[int]] = defaultdict(list)
         for number, path in self._at:
@@ -191,7 +196,16 @@ class Woven:
         for number, path in self._at:
             for key in path:
                 found[number, at.get(key, [])] = True
+        for number, loop, counters in self._loops:
+            for other, place, read in self._reads:
+                if counters & read and not self._is_in(place, loop):
+                    found[number, other] = True
         return found | found.T
+
+    def _is_in(self, node: ast.AST, loop: ast.AST) -> bool:
+        while node is not loop and id(node) in self._above:
+            node = self._above[id(node)][0]
+        return node is loop
 
     # -------- Where an edit is asked
 
