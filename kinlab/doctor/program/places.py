@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from typing import Any
@@ -143,6 +143,14 @@ def numbered(node: ast.AST) -> tuple[str, int] | None:
     """The letters and the number of a name: of ``m3``."""
     found = _NUMBERED.fullmatch(node.id) if isinstance(node, ast.Name) else None
     return None if found is None else (found[1], int(found[2]))
+
+
+def are_counted(entries: Sequence[ast.expr]) -> bool:
+    """Whether a row is of what was worked out before: ``[q1, q2, q3]``, or of calls with these."""
+    parts = [one.args[0] if isinstance(one, ast.Call) and len(one.args) == 1 else one
+             for one in entries]  # fmt: skip
+    known = [found[1] for one in parts if (found := numbered(one)) is not None]
+    return len(known) == len(parts) > 1 and known == [*range(known[0], known[0] + len(known))]
 
 
 def follow(one: ast.expr, other: ast.expr) -> bool:

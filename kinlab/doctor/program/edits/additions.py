@@ -16,6 +16,7 @@ from kinlab.doctor.program.places import (
     ANGLES,
     Here,
     ProgramEdit,
+    are_counted,
     follow,
     is_nothing,
     number,
@@ -138,7 +139,7 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
             cost = _GIVEN_ON
         if alone and _is_unpacked(here):
             cost = _UNPACKED
-        if entry and (_is_counted(parent) or _is_alone(parent, node)):
+        if entry and (are_counted(getattr(parent, "elts", ())) or _is_alone(parent, node)):
             cost = _AS_SET
         yield here.instead(chains.opposite(node), "sign", cost)
     below = isinstance(op, ast.Div) and here.field == "right"
@@ -206,13 +207,6 @@ def _in_the_other_case(here: Here) -> Iterator[ast.expr]:
         for term in summands(other):
             if isinstance(term, ENTRIES):
                 yield term
-
-
-def _is_counted(row: ast.AST) -> bool:
-    """Whether a row is of what was worked out before, one after another: ``[q1, q2, q3]``."""
-    every = [numbered(one) for one in getattr(row, "elts", ())]
-    known = [one[1] for one in every if one is not None]
-    return len(known) == len(every) > 1 and known == [*range(known[0], known[0] + len(known))]
 
 
 def _is_alone(row: ast.AST, node: ast.expr) -> bool:

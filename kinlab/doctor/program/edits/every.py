@@ -53,6 +53,8 @@ _ALONG = ("transpose", "moveaxis")
 """What is given numbers of axes."""
 _WRITTEN = 1.15
 """Cost of another index of where a value is written: slips are made rather where it is read."""
+_COUNTED = 1.13
+"""Cost of another counter where a value is written."""
 _GATHERED = 1.0
 """What it is to set anew in a loop what was begun before it."""
 _BOTH = 1.14
@@ -343,10 +345,10 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Program
                 swapped[k], swapped[k + 1] = swapped[k + 1], swapped[k]
                 yield here.within(target, "elts", swapped, "order", 1.07)
         if isinstance(target, ast.Subscript):
-            yield from _target(here, target, observed)
+            yield from _target(here, target, scope, observed)
             yield from across(here)
     if isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Subscript):
-        yield from _target(here, node.target, observed)
+        yield from _target(here, node.target, scope, observed)
         yield from _for_all_joints(here, scope, observed)
     if isinstance(node, ast.Assign | ast.AugAssign | ast.Return | ast.Expr):
         yield from _counted(here, scope)
@@ -472,7 +474,9 @@ def _filled_beside(here: Here, target: ast.Subscript, observed: Observed) -> lis
     return [x for x in dict.fromkeys(found) if x != getattr(target.value, "id", x)]
 
 
-def _target(here: Here, target: ast.Subscript, observed: Observed) -> Iterator[ProgramEdit]:
+def _target(
+    here: Here, target: ast.Subscript, scope: Scope, observed: Observed
+) -> Iterator[ProgramEdit]:
     """Where the value is put."""
     yield from of_keys(here, target, 1.12)
     sizes = observed.shape(target.value) or ()
@@ -489,6 +493,9 @@ def _target(here: Here, target: ast.Subscript, observed: Observed) -> Iterator[P
         elif not isinstance(key, ast.Slice):
             for step in (1, -1):
                 yield here.within(holder, field, plus(key, step), "index", 1.15)
+            for other_name in sorted(scope.counting - {*names(key)}):
+                other_key = ast.Name(other_name, ast.Load())
+                yield here.within(holder, field, other_key, "index", _COUNTED)
             if isinstance(key, ast.Name):  # the entries of all joints before it, too
                 before = ast.Slice(None, plus(key, 1), None)
                 yield here.within(holder, field, before, "index", _ALL_BEFORE)

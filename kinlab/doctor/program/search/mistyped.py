@@ -36,7 +36,7 @@ def mistyped(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
     points of screw axes.
     """
     home = _home(robot)
-    known = [*own_numbers(robot).tolist(), *home]
+    known = {abs(x) for x in (*own_numbers(robot).tolist(), *home)}  # -0.425 is typed 0.425, too
     for edit in of_table(trial, observed, robot):
         if edit.kind == "entries swapped" or (edit.numbers and _is_sure(robot, *edit.numbers)):
             yield edit
@@ -44,7 +44,7 @@ def mistyped(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
     for place in numbers(trial, observed):
         value = place.value
         if isinstance(value, float) and _is_strange(robot, value) and abs(value) not in home:
-            meant = {x for x in known if x * value > 0 and is_slip(value, x)}
+            meant = {float(np.copysign(x, value)) for x in known if is_slip(value, x)}
             if len(meant) == 1 and max(map(len, map(_digits, (value, *meant)))) >= _DIGITS:
                 yield place.edit(meant.pop(), "number", _COST)
 

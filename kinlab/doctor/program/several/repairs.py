@@ -6,6 +6,7 @@ first that explain most; then what is left is looked for beside an edit that mak
 
 from __future__ import annotations
 
+import ast
 import copy
 from dataclasses import replace
 from itertools import chain, combinations
@@ -15,7 +16,7 @@ import numpy as np
 
 from kinlab.doctor.glossary.meaning import meaning_of
 from kinlab.doctor.program.edits.numbers.as_the_arm import of_table
-from kinlab.doctor.program.places import DATA, ProgramEdit, changed, row_of
+from kinlab.doctor.program.places import DATA, ProgramEdit, are_counted, changed, row_of
 from kinlab.doctor.program.search.chosen import turns_a_length
 from kinlab.doctor.program.search.mistyped import mistyped
 from kinlab.doctor.program.search.repair import SAME, LineSearch, ProgramRepair
@@ -112,8 +113,10 @@ def single(search: LineSearch) -> list[ProgramRepair]:
     if not two or len(two[0].edits) > _DEEPEST or max(map(search.likely, two[0].edits)) >= _FAR:
         return found
     more = search.left_right(two[0].edits) - search.left_right(found[0].edits)
+    if more > 0:
+        return two
     far = search.likely(found[0].edits[0]) >= _FARTHEST
-    return two if more > 0 or not (far or more) else found
+    return found if far or more else [replace(two[0], rivals=(found[0],))]
 
 
 def _without_right_ones(search: LineSearch) -> LineSearch:
@@ -127,7 +130,13 @@ def _without_right_ones(search: LineSearch) -> LineSearch:
 def _is_doubtful(search: LineSearch, edit: ProgramEdit) -> bool:
     """Whether one edit may only make up for two: far-fetched, or a minus for a length as it is."""
     far = search.likely(edit) >= _FARTHEST
+    row = edit.changes[0].holder
+    far = far or (edit.kind == "sign" and isinstance(row, list) and _are_results(row))
     return far or turns_a_length(edit, search.observed, search.case.robot)
+
+
+def _are_results(row: list[Any]) -> bool:
+    return all(isinstance(one, ast.expr) for one in row) and are_counted(row)
 
 
 def of_mistyped(search: LineSearch) -> list[ProgramRepair]:

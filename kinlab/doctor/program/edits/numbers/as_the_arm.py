@@ -44,6 +44,8 @@ _DECIMALS_OF_DEGREES = 9
 """Decimals that angles in degrees are typed with at most."""
 _OF_AXES = 9
 """The last columns, of centres and of tensors, whose signs are those of a link's axes."""
+_AXES = 3
+"""Rows and columns of a tensor of inertia."""
 _PARTS = 12
 """Into how many parts of pi a number may fall."""
 
@@ -63,6 +65,7 @@ def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
     for cell, right in _named(trial, observed, table):
         if not _same(cell.value, right):
             yield cell.edit(right)
+    yield from _of_tensors(trial, observed, table)
     off: dict[tuple[Any, int], dict[Any, list[tuple[_Cell, float]]]] = {}
     alone: set[tuple[_Cell, float]] = set()
     every = _columns_of(trial, observed)
@@ -91,6 +94,41 @@ def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
             row = _row(some, whole, alone.issuperset(some))
             yield replace(row, cost=row.cost + _TOGETHER)
         yield from (cell.edit(right) for found in cells.values() for cell, right in found)
+
+
+def _of_tensors(trial: Trial, observed: Observed, table: DHTable) -> Iterator[ProgramEdit]:
+    """Numbers of a matrix that is a link's tensor but for one number, or for one and its mirror."""
+    own = [np.asarray(link.inertia, dtype=float) for link in table.links]
+    for cells in _matrices(trial, observed):
+        values = np.array([[cell.value for cell in row] for row in cells])
+        for tensor in own:
+            off = np.argwhere(~np.isclose(values, tensor, rtol=TOLERANCES.same_number, atol=0.0))
+            mirrored = len(off) == 1 or (len(off) == 2 and tuple(off[0]) == tuple(off[1][::-1]))
+            if mirrored and np.count_nonzero(tensor) > np.count_nonzero(tensor[tuple(off.T)]) + 1:
+                for i, k in off:
+                    yield cells[i][k].edit(float(tensor[i, k]))
+
+
+def _matrices(trial: Trial, observed: Observed) -> Iterator[list[list[_Cell]]]:
+    """Three rows of three numbers each, in the data or the text of a program."""
+    data: dict[Any, dict[tuple[int, int], _Cell]] = {}
+    for leaf in leaves(trial):
+        i, k = leaf.place[-2:] if len(leaf.place) >= _AXES - 1 else (None, None)
+        if isinstance(i, int) and isinstance(k, int):
+            whose = (leaf.node, leaf.place[:-2])
+            data.setdefault(whose, {})[i, k] = _Cell(float(leaf.value), leaf)
+    square = [(i, k) for i in range(_AXES) for k in range(_AXES)]
+    for found in data.values():
+        if sorted(found) == square:
+            yield [[found[i, k] for k in range(_AXES)] for i in range(_AXES)]
+    for part, tree in enumerate(trial.trees):
+        for node in nodes(tree):
+            rows = node.elts if isinstance(node, ast.List) and len(node.elts) == _AXES else []
+            lists = [x.elts for x in rows if isinstance(x, ast.List) and len(x.elts) == _AXES]
+            cells = [[_cell(observed, part, row, k) for k in range(_AXES)] for row in lists]
+            whole = [[one for one in row if one is not None] for row in cells]
+            if len(whole) == _AXES and all(len(row) == _AXES for row in whole):
+                yield whole
 
 
 def _of_legs(trial: Trial, observed: Observed, robot: FiveBar) -> Iterator[ProgramEdit]:
