@@ -334,3 +334,67 @@ def test_a_number_of_several_links_is_said_of_none():
     found = kl.diagnose(robot, quantity, written(wrong))
     assert "LINKS[2]['c'][1]" in found.sentence, found
     assert "link 1" not in found.sentence, found
+
+
+INDICES = """
+import numpy as np
+
+def f(q):
+    t = np.cumsum(q)
+    l = np.array([0.5, 0.4, 0.25])
+    J = np.zeros((3, 3))
+    for i in range(3):
+        for j in range(i + 1):
+            J[0, j] -= l[i]*np.sin(t[i])
+            J[1, j] += l[i]*np.cos(t[i])
+    J[2] = 1.0
+    return J
+"""
+TENSORS = """
+import numpy as np
+
+A, ALPHA, M = (0.0, 0.45, 0.35), (0.0, 0.0, np.pi/2), (3.0, 2.0, 1.2)
+PC = [[0.2, 0.02, -0.01], [0.15, -0.01, 0.03], [0.12, 0.03, 0.01]]
+I = np.zeros((3, 3, 3))
+I[0] = np.diag([0.02, 0.08, 0.07])
+I[1] = np.diag([0.01, 0.04, 0.045])
+I[2] = [[0.004, 0.001, 0.0], [0.001, 0.012, 0.0005], [0.0, 0.0005, 0.014]]
+
+def turned(al, t):
+    ca, sa, ct, st = np.cos(al), np.sin(al), np.cos(t), np.sin(t)
+    return np.array([[ct, -st, 0], [st*ca, ct*ca, -sa], [st*sa, ct*sa, ca]])
+
+def f(q, v):
+    w, u, T = np.zeros(3), np.zeros(3), 0.0
+    for k in range(3):
+        R = turned(ALPHA[k], q[k])
+        u = R.T @ (u + np.cross(w, [A[k], 0.0, 0.0]))
+        w = R.T @ w + np.array([0.0, 0.0, v[k]])
+        uc = u + np.cross(w, PC[k])
+        T += 0.5*M[k]*uc @ uc + 0.5*w @ I[k] @ w
+    return T
+"""
+
+
+@pytest.mark.parametrize(
+    ("robot", "quantity", "text", "right", "slip", "kind"),
+    [
+        pytest.param("planar3r", "planar_jacobian", INDICES, "J[1, j]", "J[1, i]", "index", id="a counter in a target"),
+        pytest.param("spatial3r", "kinetic_energy", TENSORS, "0.001, 0.012", "0.001, 0.0012", "number", id="a tensor"),
+    ],
+)  # fmt: skip
+def test_where_a_value_is_written_and_a_typed_tensor(
+    robot, quantity, text, right, slip, kind, tmp_path
+):
+    assert kl.diagnose(robot, quantity, written(text)).agrees
+    cause = told_in_its_line(robot, quantity, text, right, slip, tmp_path / "own.py")
+    assert kind in cause.kinds[0]
+
+
+def test_two_signs_and_one_of_a_result_are_both_told():
+    """Both make the elbow's other solution of it: which happened, nothing tells."""
+    robot, quantity, text = PROGRAMS["arm"]
+    slips = [("t1 = beta - psi", "t1 = beta + psi"), ("phi - t1 - t2", "phi - t1 + t2")]
+    found = kl.diagnose(robot, quantity, written(with_slips(text, slips)))
+    assert not found.agrees and "t1 = beta - psi" in found.sentence, found
+    assert "phi - t1 - t2" in found.sentence, found

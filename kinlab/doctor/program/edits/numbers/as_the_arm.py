@@ -254,6 +254,16 @@ def as_it_is(trial: Trial, observed: Observed, robot: Any) -> Callable[[ProgramE
             typed_ = [cell.node for cell in found.values() if cell.node is not None]
             same |= {id(inner) for node in typed_ for inner in nodes(node)}
 
+    ends = [np.round(np.asarray(end, dtype=float), _DECIMALS) for end in (table.base, table.tool)]
+    ends = [end for end in ends if not np.array_equal(end, np.eye(4))]
+    every = (node for tree in trial.trees for node in nodes(tree)) if ends else ()
+    for node in every:
+        seen = observed.of(node) if isinstance(node, ast.Call) else None
+        if seen is None or seen.shape != (4, 4) or not seen.values:
+            continue
+        if any(all(np.array_equal(value, end) for value in seen.values) for end in ends):
+            same |= {id(inner) for inner in nodes(node)}
+
     def sure(edit: ProgramEdit) -> bool:
         if edit.part == DATA:
             return _column(edit.node, edit.place)[0] in same
