@@ -254,14 +254,13 @@ def as_it_is(trial: Trial, observed: Observed, robot: Any) -> Callable[[ProgramE
             typed_ = [cell.node for cell in found.values() if cell.node is not None]
             same |= {id(inner) for node in typed_ for inner in nodes(node)}
 
-    ends = [np.round(np.asarray(end, dtype=float), _DECIMALS) for end in (table.base, table.tool)]
-    ends = [end for end in ends if not np.array_equal(end, np.eye(4))]
-    every = (node for tree in trial.trees for node in nodes(tree)) if ends else ()
-    for node in every:
+    base = np.round(np.asarray(table.base, dtype=float), _DECIMALS) + 0.0
+    turned = not np.array_equal(base[:3, :3], np.eye(3))  # a shift may be that of a link as well
+    for node in (one for tree in trial.trees for one in nodes(tree)) if turned else ():
         seen = observed.of(node) if isinstance(node, ast.Call) else None
-        if seen is None or seen.shape != (4, 4) or not seen.values:
+        if seen is None or seen.shape != base.shape or not seen.values:
             continue
-        if any(all(np.array_equal(value, end) for value in seen.values) for end in ends):
+        if all(np.array_equal(value, base) for value in seen.values):
             same |= {id(inner) for inner in nodes(node)}
 
     def sure(edit: ProgramEdit) -> bool:
