@@ -503,6 +503,10 @@ _OF_ARRAY = re.compile(
 )
 
 
+_OF_EXCHANGE = re.compile(r"entries are exchanged: `[^`]*` should be `(?P<new>[^`]*)`")
+_SET = re.compile(r"[A-Za-z_]\w*(?:\[[^\]]*\])* = [-+.e\d]+")
+
+
 def names_a_line(sentence: str) -> bool:
     """Whether a sentence says what should stand in the program."""
     return any(p.search(sentence) for p in (_SAID, _OF_DATA, _OF_ARRAY))
@@ -530,6 +534,9 @@ def repaired(text: str, sentence: str):
             _data(space, found, float(found["new"]))
         for found in _OF_ARRAY.finditer(sentence):
             _data(space, found, None)
+        for exchange in _OF_EXCHANGE.finditer(sentence):
+            for found in _SET.finditer(exchange["new"]):
+                exec(found[0], space)  # noqa: S102  texts of the tests
         yield space
 
 

@@ -8,6 +8,7 @@ where nothing tells two places apart, both are told.
 from __future__ import annotations
 
 import pytest
+from hand_programs import PROGRAMS as OWN
 from hand_programs import asked, told_in_its_line, with_slips, written
 
 import kinlab as kl
@@ -225,21 +226,8 @@ rod = Rod(2.5, 0.6, 0.3)
 def f(q, v, tau):
     return [(tau[0] - rod.gravity(q[0]))/rod.inertia()]
 """
-MASSES = """
-import numpy as np
-
-m1, m2 = 2.0, 1.5
-l1, l2 = 0.5, 0.4
-
-def f(q):
-    c2 = np.cos(q[1])
-    M11 = m1*l1**2 + m2*(l1**2 + l2**2 + 2*l1*l2*c2)
-    M12 = m2*(l2**2 + l1*l2*c2)
-    M22 = m2*l2**2
-    return np.array([[M11, M12], [M12, M22]])
-"""
 PROGRAMS = {
-    "masses": ("planar2r", "mass_matrix", MASSES),
+    "masses": ("planar2r", "mass_matrix", OWN["planar mass matrix"].text),
     "arm": ("planar3r", "inverse_kinematics_xyphi", ARM),
     "coriolis": ("planar2r_rods", "coriolis_matrix", CORIOLIS),
     "differences": ("planar2r", "coriolis_matrix", DIFFERENCES),
@@ -303,7 +291,7 @@ def test_a_slip_is_told_where_it_was_made(name, right, slip, kind, tmp_path):
         ),
         pytest.param(
             "masses",
-            [("l1, l2 = 0.5, 0.4", "l1, l2 = 0.4, 0.5"), ("M12 = m2*", "M12 = m1*")],
+            [("l1, l2 = 0.5, 0.4", "l1, l2 = 0.4, 0.5"), ("M12 = m2 *", "M12 = m1 *")],
             ["two entries are exchanged: `l1 = 0.4, l2 = 0.5`", "M12 = m2*"],
             id="an exchange is one slip",
         ),
@@ -313,7 +301,7 @@ def test_two_slips_are_told_where_they_were_made(name, slips, said):
     robot, quantity, text = PROGRAMS[name]
     found, good = asked(with_slips(text, slips), robot, quantity)
     assert all(one in found.sentence for one in said), found.sentence
-    assert good or "exchanged" in found.sentence, found.sentence
+    assert good, found.sentence
     assert len(found.causes[0].kinds) == len(slips), found
 
 

@@ -22,7 +22,7 @@ from kinlab.doctor.program.digits import of_rounded_numbers
 from kinlab.doctor.program.edits.chains import SUMS, chain, joined
 from kinlab.doctor.program.edits.numbers.as_the_arm import of_table
 from kinlab.doctor.program.edits.numbers.data import leaves, shown
-from kinlab.doctor.program.edits.numbers.exchanged import as_exchanged, key_text
+from kinlab.doctor.program.edits.numbers.exchanged import as_exchanged, label
 from kinlab.doctor.program.grounds.scaled import is_own
 from kinlab.doctor.program.named import named
 from kinlab.doctor.program.nearly import of_small_numbers
@@ -343,9 +343,8 @@ def cause_of(repair: ProgramRepair, search: LineSearch) -> Cause:
     trial = search.trial
     rivals = repair.rivals if not _beside(repair, trial) else ()
     shared = {id(edit) for one in rivals[:1] for edit in one.edits}
-    last = [edit for edit in repair.edits if id(edit) not in shared]
-    both = [edit for edit in repair.edits if id(edit) in shared] if rivals else []
-    told = [*_told(replace(repair, edits=(*both, *last)), trial)]
+    in_turn = sorted(repair.edits, key=lambda edit: id(edit) not in shared)  # what differs last
+    told = [*_told(replace(repair, edits=tuple(in_turn)), trial)]
     known = [one for edit in repair.edits for one in named(edit, search)]
     is_ = _("`{piece}` is {thing}")
     told += [is_.format(piece=_typed(text), thing=thing) for text, thing in known[:_NAMED]]
@@ -468,7 +467,7 @@ def _place(edit: ProgramEdit) -> str:
 
 
 def _of_data(edit: ProgramEdit, trial: Trial) -> str:
-    name = edit.node + key_text(edit)
+    name = label(edit)
     number = line_of(trial.program.parts[0].function, edit.node, edit.place)
     if number is not None:
         name = _("line {number}, {name}").format(number=number, name=name)
@@ -645,8 +644,8 @@ def believed(repair: ProgramRepair, search: LineSearch) -> ProgramRepair | None:
             return None
         edits.append(_branch(edit, repair, search) or _idle(edit, repair, search) or edit)
     rivals = [believed(one, search) for one in repair.rivals]
-    rivals_ = tuple(one for one in rivals if one)
-    return replace(repair, edits=as_exchanged(edits), rivals=rivals_)
+    known = tuple(one for one in rivals if one)
+    return replace(repair, edits=as_exchanged(edits), rivals=known)
 
 
 def _needed(repair: ProgramRepair, search: LineSearch) -> bool:

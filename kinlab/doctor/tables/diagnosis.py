@@ -23,8 +23,7 @@ from kinlab.doctor.tables.reference.against import (
     read_mine,
     read_reference,
 )
-from kinlab.doctor.tables.result import TableDiagnosis, joined
-from kinlab.doctor.tables.result import told as result_told
+from kinlab.doctor.tables.result import TableDiagnosis, joined, stated
 from kinlab.doctor.tables.search import explain
 from kinlab.doctor.tables.words import SIX, Cause, listed
 from kinlab.errors import InertiaError, KinlabWarning, OptionError, StructureError, TableError
@@ -122,11 +121,12 @@ def _judge(table: DHTable, reference: Reference, bodies: bool, notes: list[str])
     agreed = before <= reference.target.tolerance
     found = [Reading(chain)] if agreed else _explained(chain, reference, (1,))
     if not found and reference.axes is None and table.n == reference.n:
-        bad = table_noise.standing_out(table, reference)
+        fit = table_noise.Calibration.of(chain, reference.target)
+        bad = table_noise.standing_out(chain, fit)
         if bad:
             fewer = table_noise.without(reference, bad)
             return _judge(table, fewer, bodies, [*notes, _left_out(bad)])
-        noisy = table_noise.judge(table, reference, notes)
+        noisy = table_noise.judge(table, reference, fit, notes)
         if noisy is not None:
             return noisy
     if not found or found[0].cost >= SIX:
@@ -201,7 +201,7 @@ def _told(
     unseen = reference.unseen(chain)
     maybe = unseen.union(*(cause.rows for option in options for cause in option[1]))
     rest = tuple(i for i in range(1, repaired.n + 1) if i not in maybe and not whole)
-    told = result_told(causes, bool(unseen))
+    told = stated(causes, bool(unseen))
     if reference.axes is None and any(cause.column == "units" for cause in causes):
         units = _("it may as well be the poses that are in another unit than metres")
         common["notes"] = (*common["notes"], units)

@@ -31,7 +31,7 @@ from kinlab.doctor.tables.chain import (
 from kinlab.doctor.tables.readings import Reading, readings
 from kinlab.doctor.tables.reference.against import Reference
 from kinlab.doctor.tables.reference.target import Target
-from kinlab.doctor.tables.result import TableDiagnosis, told
+from kinlab.doctor.tables.result import TableDiagnosis, stated
 from kinlab.doctor.tables.words import pose_cause
 from kinlab.host.language import _
 from kinlab.model.dh import DHTable
@@ -66,12 +66,49 @@ class _Fit:
     chi: float
 
 
-def judge(table: DHTable, reference: Reference, notes: Sequence[str]) -> TableDiagnosis | None:
+@dataclass(frozen=True, eq=False)
+class Calibration:
+    """All cells, base and tool fitted to poses together.
+
+    Attributes:
+        target: the poses.
+        candidates: what was fitted alone, and may be what is meant.
+        chain: the fit.
+    """
+
+    target: Target
+    candidates: list[Reading]
+    chain: Chain
+
+    @staticmethod
+    def of(chain: Chain, target: Target) -> Calibration | None:
+        """The best fit from a table and the likeliest candidates; None of too few poses."""
+        if 6 * len(target.q) < 2 * (4 * chain.n + 12):
+            return None
+        candidates = _candidates(Reading(chain), target)
+        rough = (1e-3 * target.size, 1e-3)
+        starts = sorted(candidates, key=lambda one: _chi(one.chain, target, rough))[:4]
+        fits = (_calibrated(one, target) for one in [chain, *(x.chain for x in starts)])
+        best = min(fits, key=lambda one: _chi(one, target, rough))
+        return Calibration(target, candidates, best)
+
+    def misses(self, target: Target) -> Array:
+        """How far each of some poses is off beside the fit, lengths over the arm's size, (N,)."""
+        rest = _rest(frames(self.chain, target.q)[:, -1], target)
+        weight = np.repeat([1.0 / self.target.size, 1.0], 3)
+        out: Array = np.linalg.norm(rest * weight, axis=1)
+        return out
+
+
+def judge(
+    table: DHTable, reference: Reference, fit: Calibration | None, notes: Sequence[str]
+) -> TableDiagnosis | None:
     """A verdict on a table from poses with noise.
 
     Args:
         table: the user's table.
         reference: poses.
+        fit: to these.
         notes: for the result.
 
     Returns:
@@ -80,10 +117,9 @@ def judge(table: DHTable, reference: Reference, notes: Sequence[str]) -> TableDi
     """
     chain, target = Chain.of(table), reference.target
     numbers = 6 * len(target.q)
-    if _are_few(chain, target):
+    if fit is None:
         return None
-    candidates = _candidates(Reading(chain), target)
-    full = _full(chain, candidates, target)
+    candidates, full = fit.candidates, fit.chain
     sigma, rank = _noise(full, target)
     if max(sigma[0] / target.size, sigma[1]) < TOLERANCES.exact_poses:
         return None
@@ -123,7 +159,7 @@ def judge(table: DHTable, reference: Reference, notes: Sequence[str]) -> TableDi
     wrong = {row for cause in first.causes for row in cause.rows}
     return TableDiagnosis(
         agrees=False,
-        sentence=told(first.causes, bool(reference.unseen(chain))),
+        sentence=stated(first.causes, bool(reference.unseen(chain))),
         causes=first.causes,
         alternatives=tuple(fit.reading.causes for fit in equal[1:]),
         repaired=first.chain.apply(table),
@@ -134,31 +170,35 @@ def judge(table: DHTable, reference: Reference, notes: Sequence[str]) -> TableDi
     )
 
 
-def standing_out(table: DHTable, reference: Reference) -> list[int]:
+def standing_out(chain: Chain, fit: Calibration | None) -> list[int]:
     """The poses that are off by far more than the others can be, counted from 0.
 
     Each is left out of a fit of all cells, base and tool, beside which it is off all the same: a
     marker that was lost, a row that was typed wrong. At most a tenth of all.
+
+    Args:
+        chain: the user's table.
+        fit: to all the poses.
     """
-    chain, whole = Chain.of(table), reference.target
-    kept = np.arange(len(whole.q))
     bad: list[int] = []
+    if fit is None:
+        return bad
+    whole = fit.target
+    kept = np.arange(len(whole.q))
     for _turn in range(max(1, len(kept) // 10)):
-        target = _some(whole, kept)
-        if _are_few(chain, _some(whole, kept[1:])):
-            break
-        misses = _misses(_full(chain, _candidates(Reading(chain), target), target), target)
+        misses = fit.misses(_some(whole, kept))
         worst = int(np.argmax(misses))
         rest = np.delete(kept, worst)
         if misses[worst] <= _STANDS_OUT * max(np.median(misses), TOLERANCES.exact_poses):
             break
-        fewer = _some(whole, rest)
-        fit = _full(chain, _candidates(Reading(chain), fewer), fewer)
-        most = max(float(np.max(_misses(fit, fewer))), TOLERANCES.exact_poses)
-        if _misses(fit, _some(whole, kept[[worst]]))[0] <= _FARTHER * most:
+        fewer = Calibration.of(chain, _some(whole, rest))
+        if fewer is None:
+            break
+        most = max(float(np.max(fewer.misses(fewer.target))), TOLERANCES.exact_poses)
+        if fewer.misses(_some(whole, kept[[worst]]))[0] <= _FARTHER * most:
             break
         bad.append(int(kept[worst]))
-        kept = rest
+        kept, fit = rest, fewer
     return sorted(bad)
 
 
@@ -170,26 +210,6 @@ def without(reference: Reference, bad: Sequence[int]) -> Reference:
 
 def _some(target: Target, which: Any) -> Target:
     return Target(target.q[which], target.poses[which], target.tolerance)
-
-
-def _are_few(chain: Chain, target: Target) -> bool:
-    """Whether poses are too few for a fit of all cells, base and tool."""
-    return 6 * len(target.q) < 2 * (4 * chain.n + 12)
-
-
-def _full(chain: Chain, candidates: list[Reading], target: Target) -> Chain:
-    """The best fit of all cells, base and tool, from the table and the likeliest candidates."""
-    rough = (1e-3 * target.size, 1e-3)
-    starts = sorted(candidates, key=lambda one: _chi(one.chain, target, rough))[:4]
-    fits = (_calibrated(one, target) for one in [chain, *(x.chain for x in starts)])
-    return min(fits, key=lambda one: _chi(one, target, rough))
-
-
-def _misses(chain: Chain, target: Target) -> Array:
-    """How far each pose is off, lengths over the arm's size, (N,)."""
-    rest = _rest(frames(chain, target.q)[:, -1], target)
-    out: Array = np.linalg.norm(rest * np.repeat([1.0 / target.size, 1.0], 3), axis=1)
-    return out
 
 
 def _hidden(chain: Chain, target: Target, sigma: tuple[float, float], room: float) -> Array:

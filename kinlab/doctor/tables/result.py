@@ -118,7 +118,7 @@ class TableDiagnosis(Rows):
         if "hidden_length" in c:
             told = _(
                 "noise {position:.3g} mm, {angle:.3g} deg: in one cell a slip of up to "
-                "{length:.2g} mm, or {turn:.2g} deg, would not show"
+                "{length:.2g} mm, or {turn:.2g} deg, may not show"
             )
         elif "effect" not in c:
             told = _("noise {position:.3g} mm, {angle:.3g} deg")
@@ -211,7 +211,7 @@ class TableDiagnosis(Rows):
         }
 
 
-def told(causes: tuple[Cause, ...], unseen: bool) -> str:
+def stated(causes: tuple[Cause, ...], unseen: bool) -> str:
     """The causes in one sentence, which is no proof where poses do not see some rows."""
     said = joined(causes)
     if unseen and causes:

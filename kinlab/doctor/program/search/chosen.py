@@ -83,12 +83,8 @@ def chosen(
         if not (mirrors(edit) or _moves_one_of(rows, edit) or _of_a_step(edit, trial, observed))
     ]
     every = [replace(x, cost=_MADE) if _makes_one_of(rows, x) else x for x in every]
-    every = [
-        replace(x, cost=x.cost + _TURNED) if turns_a_length(x, observed, robot) else x
-        for x in every
-    ]
-    every = [replace(x, cost=x.cost + more) if (more := _falling(robot, x)) else x for x in every]
-    every = [replace(x, cost=_OWN) if _makes_own(robot, x) else x for x in every]
+    signs = ((x, _of_sign(x, observed, robot)) for x in every)
+    every = [x if cost == x.cost else replace(x, cost=cost) for x, cost in signs]
     every = sorted(every, key=_at_best)[:most]
     weigh = dimensions.against
     return [replace(x, cost=x.cost + more) if (more := weigh(x)) else x for x in every]
@@ -200,25 +196,26 @@ def _makes_one_of(rows: list[Array], edit: ProgramEdit) -> bool:
     return _is_one_of(rows, values)
 
 
-def _falling(robot: Any, edit: ProgramEdit) -> float:
-    """What the other sign of gravity in the data costs more, where it is the robot's as it is."""
-    if edit.part != DATA or edit.kind != "sign" or edit.numbers is None or not edit.place:
-        return 0.0
-    own = getattr(getattr(robot, "model", None), "gravity", None)
-    if own is None or not GRAVITY.match(str(edit.node)):
-        return 0.0
-    old, new = (bool(np.isclose(own.linear, x).any()) and x != 0.0 for x in edit.numbers)
-    return _UPWARDS * (old and not new) - _DOWNWARDS * (new and not old)
+def _of_sign(edit: ProgramEdit, observed: Observed, robot: Any) -> float:
+    """What the other sign costs: of a length in a row more, of what is the robot's then less.
 
-
-def _makes_own(robot: Any, edit: ProgramEdit) -> bool:
-    """Whether a number that is none of the robot's is one with the other sign."""
-    if edit.kind != "sign" or edit.numbers is None or edit.cost <= _OWN:
-        return False
+    Gravity falls: the other sign of it costs more where it does so as it is, and less where it
+    does so then.
+    """
+    if edit.kind != "sign":
+        return edit.cost
+    cost = edit.cost + _TURNED * turns_a_length(edit, observed, robot)
+    if edit.numbers is None:
+        return cost
     old, new = edit.numbers
     if edit.place and GRAVITY.match(str(edit.node)):
-        return False  # it has a way of its own
-    return old == -new and is_own(robot, new) and not is_own(robot, old)
+        own = getattr(getattr(robot, "model", None), "gravity", None)
+        down = () if own is None else own.linear[own.linear != 0.0]
+        falls, will = (bool(np.isclose(down, x).any()) for x in (old, new))
+        return cost + _UPWARDS * (falls and not will) - _DOWNWARDS * (will and not falls)
+    if cost > _OWN and old == -new and is_own(robot, new) and not is_own(robot, old):
+        return _OWN
+    return cost
 
 
 def _moves_one_of(rows: list[Array], edit: ProgramEdit) -> bool:

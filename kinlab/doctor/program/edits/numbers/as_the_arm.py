@@ -113,7 +113,7 @@ def _matrices(trial: Trial, observed: Observed) -> Iterator[list[list[_Cell]]]:
     """Three rows of three numbers each, in the data or the text of a program."""
     data: dict[Any, dict[tuple[int, int], _Cell]] = {}
     for leaf in leaves(trial):
-        i, k = leaf.place[-2:] if len(leaf.place) >= _AXES - 1 else (None, None)
+        i, k = leaf.place[-2:] if len(leaf.place) > 1 else (None, None)
         if isinstance(i, int) and isinstance(k, int):
             whose = (leaf.node, leaf.place[:-2])
             data.setdefault(whose, {})[i, k] = _Cell(float(leaf.value), leaf)
@@ -132,10 +132,12 @@ def _matrices(trial: Trial, observed: Observed) -> Iterator[list[list[_Cell]]]:
 
 
 def _of_legs(trial: Trial, observed: Observed, robot: FiveBar) -> Iterator[ProgramEdit]:
-    """Numbers of a five-bar's two legs exchanged, where as many others are in the legs' order."""
+    """Numbers of a five-bar's two legs: exchanged, where as many others are in the legs' order;
+    of the middles of its links, for any two of its own; of one leg, where the other's is right.
+    """
     known = {tuple(x) for x in robot.values().values() if isinstance(x, list) and len({*x}) == 2}
-    every = [np.ravel(x) for x in robot.values().values() if not isinstance(x, str)]
-    own = {abs(float(x)) for row in every for x in row if not isinstance(x, str | bool)}
+    every = (x if isinstance(x, list) else [x] for x in robot.values().values())
+    own = {abs(float(x)) for row in every for x in row if isinstance(x, int | float)}
     straight: list[Any] = []
     turned: list[list[_Cell]] = []
     for found in _columns_of(trial, observed).values():
@@ -144,16 +146,13 @@ def _of_legs(trial: Trial, observed: Observed, robot: FiveBar) -> Iterator[Progr
             pair = cells[0].value, cells[1].value
             straight += [pair] if pair in known else []
             turned += [cells] if pair not in known and pair[::-1] in known else []
-            if pair not in known and (2 * pair[0], 2 * pair[1]) in known:  # a middle
-                for meant in known:
-                    rest = [*zip(cells, meant, strict=True)]
-                    yield _row(rest, cells, False)
+            middle = (2 * pair[0], 2 * pair[1]) in known
             for meant in known if pair not in known else ():
-                same = [_same(cell.value, right) for cell, right in zip(cells, meant, strict=True)]
-                if same.count(True) == 1:
-                    k = same.index(False)
-                    if abs(cells[k].value) not in own:
-                        yield cells[k].edit(meant[k])
+                off = [k for k in (0, 1) if not _same(pair[k], meant[k])]
+                if middle:
+                    yield _row([*zip(cells, meant, strict=True)], cells, False)
+                if len(off) == 1 and abs(pair[off[0]]) not in own:
+                    yield cells[off[0]].edit(meant[off[0]])
     for one, other in turned if len(straight) >= len(turned) else ():
         yield _row([(one, other.value), (other, one.value)], (one, other), True)
 

@@ -16,7 +16,7 @@ def as_exchanged(edits: Sequence[ProgramEdit]) -> tuple[ProgramEdit, ...]:
     for one, other in combinations(edits, 2):
         back = None if other.numbers is None else other.numbers[::-1]
         if one.part == other.part == DATA and back is not None and one.numbers == back:
-            both = _exchange(*sorted((one, other), key=_label))
+            both = _exchange(*sorted((one, other), key=label))
             rest = [x for x in edits if x is not other]
             return as_exchanged([both if x is one else x for x in rest])
     return tuple(edits)
@@ -25,17 +25,13 @@ def as_exchanged(edits: Sequence[ProgramEdit]) -> tuple[ProgramEdit, ...]:
 def _exchange(one: ProgramEdit, other: ProgramEdit) -> ProgramEdit:
     assert one.numbers is not None
     first, last = map(shown, one.numbers)
-    here, there = _label(one), _label(other)
+    here, there = label(one), label(other)
     told = (f"{here} = {first}, {there} = {last}", f"{here} = {last}, {there} = {first}")
     changes, cost = (*one.changes, *other.changes), max(one.cost, other.cost)
     return ProgramEdit(DATA, changes, _KIND, cost, one.node, one.place, exchanged=told)
 
 
-def _label(edit: ProgramEdit) -> str:
+def label(edit: ProgramEdit) -> str:
     """A number of the data as a program has it: ``COM[2][1]``."""
-    return f"{edit.node}{key_text(edit)}"
-
-
-def key_text(edit: ProgramEdit) -> str:
-    """The keys down to a number of the data, as they are typed."""
-    return "".join(key if str(key).startswith(".") else f"[{key!r}]" for key in edit.place)
+    keys = (key if str(key).startswith(".") else f"[{key!r}]" for key in edit.place)
+    return str(edit.node) + "".join(keys)

@@ -140,7 +140,11 @@ def _is_entry_of(node: ast.expr, name: str) -> bool:
 
 
 def uncalled(
-    trial: Trial, observed: Observed, own: Container[str], at_hand: Sequence[str]
+    trial: Trial,
+    observed: Observed,
+    own: Container[str],
+    names: Sequence[str],
+    at_hand: Sequence[str],
 ) -> Iterator[Sized]:
     """Calls of the module's functions that nothing calls, with what is at hand.
 
@@ -148,12 +152,12 @@ def uncalled(
         trial: the program.
         observed: what its expressions were.
         own: the names of its functions.
+        names: those of the functions that nothing calls.
         at_hand: names that may be given to them.
     """
-    every = _calls(trial)
-    known = {observed.shape(x) for x in every if called(x) in own}
+    known = {observed.shape(x) for x in _calls(trial) if called(x) in own}
     shapes = {_VECTOR, _MATRIX, _TWISTS, *(one for one in known if one)}
-    for name in not_called(trial):
+    for name in names:
         for given in at_hand:
             call = ast.Call(named(name), [named(given)], [])
             for shape in sorted(shapes):

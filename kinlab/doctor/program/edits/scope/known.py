@@ -304,8 +304,8 @@ class Knowledge:
                 self._put_all(((), one) for one in idle.with_its_angle(joint, sine))
                 self.idle += idle.calls_for(joint, tree, self.functions, self.observed)
         self._put_as_idle(idle.idle_rows(trial, tree, self.observed))
-        at_hand = [*self.unused, *self.counters, *(n for n, shape in self.shapes.items() if shape)]
-        self.idle += idle.uncalled(trial, self.observed, self.functions, at_hand)
-        rows = sorted(one for one in self.unused if len(self.shapes[one]) == 1)
         own = self.functions
+        at_hand = [*self.unused, *self.counters, *(n for n, shape in self.shapes.items() if shape)]
+        self.idle += idle.uncalled(trial, self.observed, own, self.uncalled, at_hand)
+        rows = sorted(one for one in self.unused if len(self.shapes[one]) == 1)
         self.idle += idle.calls_with_idle(trial, self.observed, own, rows, self.counters)
