@@ -44,6 +44,7 @@ _OTHERWISE = re.compile(
     r"|replaced|corrected|changed|multiplied|divided|halved|doubled|negated|inverted|transposed)\b"
     r"|\b(?:twice|half|double|triple)\s+(?:of\s+)?(?:the|its)\s+(?:\w+\s+)?"
     r"(?:energy|torque|value|result|entry|matrix|lagrangian)\b"
+    r"|\b(?:for|of)\s+(?:the\s+|an)other\s+(?:\w+\s+)?(?:arm|robot|manipulator)\b"
     r"|\bfactor\s+(?:of\s+)?(?:two|2|1/2|0\.5|½|one\s+half|-1|minus\s+one)\b"
     r"|\b(?:neglect|ignor|disregard|vernachlässig)\w*\s+(?:\w+\s+){0,3}"
     r"(?:mass\w*|gravity|weight|inertia|masse|gewicht\w*|schwerkraft|trägheit)"
