@@ -22,6 +22,12 @@ hypothesis.settings.register_profile(
 hypothesis.settings.load_profile("kinlab")
 
 
+@pytest.fixture(autouse=True)
+def _faults_are_raised(monkeypatch) -> None:
+    """A fault in the search for a cause fails a test: a user is told of it beside the verdict."""
+    monkeypatch.setattr("kinlab.doctor.examine.LOUD", True)
+
+
 def pytest_collection_modifyitems(items):
     """Marks the tests that open a browser, whose arithmetic is its own; the files with them first.
 

@@ -111,7 +111,7 @@ class Diagnosis(Answer):
             so close that rounded constants may be all that is wrong with it; ``"words"`` where
             words beside it may mean that it claims something else, so that it is not judged.
         remarks: what is to be said of a right formula: which numbers are rounded, for which robot
-            alone it holds, in what it is unusual.
+            alone it holds, in what it is unusual; of a wrong one, what kept from finding more.
         proved: of a formula that nothing explains, what of it is right all the same: kinds of term
             (gravity, velocities, accelerations) and entries, in sentences.
         given, corrected: for a report, the formulas as written, and as they should be where that
@@ -264,7 +264,7 @@ class Diagnosis(Answer):
                 for name, text in best.shown.items()
             ]
             lines += [_("or: {slip}").format(slip=text) for text in self.others]
-            return Introduction(verdict, tuple(lines), mood="bad")
+            return Introduction(verdict, (*lines, *self.remarks), mood="bad")
         if self._other_shape:
             return Introduction(verdict, (self._shapes, *self.partial), mood="unsure")
         lines = [*self.proved]
@@ -276,6 +276,7 @@ class Diagnosis(Answer):
                 state=self._at_worst(100),
             )
         )
+        lines += self.remarks if self.form != "words" else ()
         return Introduction(verdict, tuple(lines), mood="unsure")
 
     def _at_worst(self, width: int) -> str:

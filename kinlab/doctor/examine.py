@@ -57,6 +57,8 @@ from kinlab.tolerances import TOLERANCES
 
 _NAMED = 8
 """Causes that are kept."""
+LOUD = False
+"""Whether a fault in the search through a program's lines is raised: the verdict rests on none."""
 _SLIPS = 2
 """Slips in a function's values above which one number of the robot that is another is likelier."""
 _FAR = 0.15
@@ -78,7 +80,17 @@ def examine(
         OptionError: the answers are not real numbers.
     """
     with _uncollected(), np.errstate(all="ignore"):  # what has no value is looked for, not told
-        return _examined(case, hand, engine, quantity, name, written)
+        try:
+            return _examined(case, hand, engine, quantity, name, written)
+        except KinlabError:
+            raise
+        except Exception as problem:
+            if LOUD or case.lines is None:
+                raise
+            fault = f"{type(problem).__name__}: {problem}"
+        found = _examined(replace(case, lines=None), hand, engine, quantity, name, written)
+        note = _("its lines were not looked through: a fault of kinlab's own ended that ({fault})")
+        return replace(found, remarks=(*found.remarks, note.format(fault=fault)))
 
 
 @contextmanager

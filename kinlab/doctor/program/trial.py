@@ -8,7 +8,7 @@ import functools
 import inspect
 import sys
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from types import CodeType, FrameType, FunctionType
@@ -400,6 +400,24 @@ class Trial:
                     filled.clear()
                 return self._entry()(*self.bound, *state)
             except SystemExit as end:  # an edit led to where the program ends itself
+                self._stale = self._stale or bool(self._loads)
+                raise FailedError from end
+
+    def part(self, k: int, given: Sequence[Any], named: Mapping[str, Any]) -> Any:
+        """What one part of the program answers, asked alone.
+
+        Raises:
+            FailedError: it ends with an error, or ends itself.
+        """
+        self._turns = 0
+        with _its_own_errors():
+            try:
+                if self._stale:
+                    self.load()
+                for filled in self._filled:
+                    filled.clear()
+                return self._placed[k](*given, **named)
+            except SystemExit as end:
                 self._stale = self._stale or bool(self._loads)
                 raise FailedError from end
 

@@ -96,7 +96,9 @@ class Elsewhere:
             yield from _other_ranges(here, scope)
         for new in self._lines.get(id(node), ()):
             if _known(new, scope):
-                table = isinstance(node, ast.List) and isinstance(node.elts[0], ast.List)
+                table = isinstance(node, ast.List) and any(
+                    isinstance(one, ast.List) for one in node.elts[:1]
+                )
                 yield here.instead(new, _kind(node, new), 1.14 if table else 1.06)
         if isinstance(here.parent, ast.Call) and here.holder is here.parent.args:
             mine = text_of(node)

@@ -7,7 +7,7 @@ import re
 _CALLED = (
     (re.compile(r"(lc|lg|ac|com|cm|cen|rc)|(c|s)[xyz]?$"), ("centre",)),
     (re.compile(r"(i|j)[xyz]{0,2}(c|g|cm|com)?$|inert|moment|tens"), ("moment",)),
-    (re.compile(r"m$|mass"), ("mass",)),
+    (re.compile(r"m$|mass|payload"), ("mass",)),
     (re.compile(r"al|twist"), ("twist",)),
     (re.compile(r"[la]$|len|linkl"), ("length",)),
     (re.compile(r"[rd]$"), ("length", "centre")),

@@ -19,7 +19,12 @@ from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import called, nodes, text_of
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.numbers.data import NumberPlace, leaves_of, numbers, together
-from kinlab.doctor.program.edits.numbers.own_numbers import among, may_be_gravity, sizes_of
+from kinlab.doctor.program.edits.numbers.own_numbers import (
+    among,
+    may_be_gravity,
+    sizes_of,
+    sizes_of_legs,
+)
 from kinlab.doctor.program.edits.scope.functions import ARCS
 from kinlab.doctor.program.edits.single.whole import SIZES
 from kinlab.doctor.program.grounds.called import kinds_called
@@ -35,6 +40,7 @@ from kinlab.doctor.program.places import (
     with_other,
 )
 from kinlab.doctor.program.trial import FailedError, NoProgramError, Trial
+from kinlab.fivebar import FiveBar
 from kinlab.model.dh import DHTable
 from kinlab.tolerances import TOLERANCES
 
@@ -47,6 +53,15 @@ _BY = {
     "gravity": _LENGTH * _RATE**2,
     "none": 1.0,
 }
+_UNITS_OF_LEGS: Mapping[str, Any] = {
+    "xy": _LENGTH,
+    "v": _LENGTH * _RATE,
+    "a": _LENGTH * _RATE**2,
+    "mode": 1.0,
+    "theta": 1.0,
+    "s": 1.0,
+}
+"""By how much a five-bar's arguments grow in other units."""
 _MEANT = {"length": "length", "centre": "length", "mass": "mass", "moment": "moment",
           "kept": "gravity"}  # fmt: skip
 """What a number is that is called so."""
@@ -89,8 +104,14 @@ class Dimensions:
         table = table_of(robot)
         turns = table is not None and all(link.joint == "revolute" for link in table.links)
         self._alike = alike and turns
-        larger = None if table is None else _larger(table, names, states)
-        put = None if table is None else _in_other_units(trial, observed, table)
+        if isinstance(robot, FiveBar):
+            by, kinds, angles = _UNITS_OF_LEGS, sizes_of_legs(robot), set[float]()
+        elif table is not None:
+            by, kinds, angles = _units(table), sizes_of(table), _angles(table)
+        else:
+            return
+        larger = _larger(by, names, states)
+        put = None if larger is None else _in_other_units(trial, observed, kinds, angles)
         if larger is None or put is None:
             return
         parts = {edit.part for edit in put}
@@ -395,14 +416,12 @@ def _factors_of(node: ast.expr) -> Iterator[ast.expr]:
         yield from _factors_of(node.right) if isinstance(node.op, ast.Mult) else ()
 
 
-def _larger(
-    table: DHTable, names: Sequence[str], states: Sequence[tuple[Any, ...]]
-) -> list[tuple[Any, ...]] | None:
-    """The states in other units; None where an argument is none that has one."""
+def _units(table: DHTable) -> Mapping[str, Any]:
+    """By how much an arm's arguments grow in other units."""
     slides = np.array([link.joint == "prismatic" for link in table.links])
     along = np.where(slides, _LENGTH, 1.0)
     force = _MASS * _LENGTH**2 * _RATE**2 / along
-    by: Mapping[str, Any] = {
+    return {
         "q": along,
         "v": along * _RATE,
         "a": along * _RATE**2,
@@ -412,6 +431,17 @@ def _larger(
         "z": _LENGTH,
         "phi": 1.0,
     }
+
+
+def _angles(table: DHTable) -> set[float]:
+    """The sizes of the angles of a table."""
+    return {abs(x) for link in table.links for x in (link.alpha, link.theta)}
+
+
+def _larger(
+    by: Mapping[str, Any], names: Sequence[str], states: Sequence[tuple[Any, ...]]
+) -> list[tuple[Any, ...]] | None:
+    """The states in other units; None where an argument is none that has one."""
     if not all(name in by for name in names):
         return None
     return [
@@ -420,10 +450,10 @@ def _larger(
     ]
 
 
-def _in_other_units(trial: Trial, observed: Observed, table: DHTable) -> list[ProgramEdit] | None:
+def _in_other_units(
+    trial: Trial, observed: Observed, kinds: Mapping[str, list[float]], angles: set[float]
+) -> list[ProgramEdit] | None:
     """The program's numbers in other units; None where one of them may be several things."""
-    kinds = sizes_of(table)
-    angles = {abs(x) for link in table.links for x in (link.alpha, link.theta)}
     put: list[tuple[NumberPlace, float]] = []
     named, axes, counting = _named(trial), _axes(trial), _counting(trial)
     every = [*numbers(trial, observed), *_unused(trial)]
@@ -436,9 +466,9 @@ def _in_other_units(trial: Trial, observed: Observed, table: DHTable) -> list[Pr
     typed, columns = _typed_columns(trial), dict[Any, set[str]]()
     for place, kind in zip(every, told, strict=True):
         if kind not in (None, "none"):
-            columns.setdefault(_column(place, typed), set()).add(str(kind))
+            columns.setdefault(_column(place, typed, not angles), set()).add(str(kind))
     for place, kind in zip(every, told, strict=True):
-        alike = columns.get(_column(place, typed), set())
+        alike = columns.get(_column(place, typed, not angles), set())
         if kind is None and len(alike) == 1:
             (kind,) = alike  # a column of a table is of one kind
         if kind is None:
@@ -448,10 +478,15 @@ def _in_other_units(trial: Trial, observed: Observed, table: DHTable) -> list[Pr
     return together(put)
 
 
-def _column(place: NumberPlace, typed: Mapping[int, Any]) -> Any:
-    """What tells the column of a table in which a number is; itself of any other."""
+def _column(place: NumberPlace, typed: Mapping[int, Any], legs: bool) -> Any:
+    """What tells the column of a table in which a number is; itself of any other.
+
+    Of a five-bar's legs two numbers of one name are one.
+    """
     if place.part != DATA:
         return typed.get(id(place.node), id(place.node))
+    if legs and len(place.place) == 1 and place.place[0] in (0, 1):
+        return place.node
     return (place.node, place.place[-1]) if len(place.place) > 1 else id(place)
 
 
@@ -484,6 +519,12 @@ def _named(trial: Trial) -> dict[int, str]:
                     name = getattr(target, "id", getattr(target, "attr", None))
                     over = value.generators[0].iter if isinstance(value, ast.ListComp) else value
                     found |= {id(one): name for one in _alone(over) if name is not None}
+            elif isinstance(node, ast.keyword) and node.arg is not None:  # dict(l1=0.3)
+                found |= dict.fromkeys(map(id, _alone(node.value)), node.arg)
+            elif isinstance(node, ast.Dict):
+                for key, value in zip(node.keys, node.values, strict=True):
+                    if isinstance(key, ast.Constant) and isinstance(key.value, str):
+                        found |= dict.fromkeys(map(id, _alone(value)), key.value)
     return found
 
 
@@ -545,6 +586,8 @@ def _kind(
     """What a number is; ``"none"`` of what has no dimension, None where that is not told."""
     size = abs(float(place.value))
     row = place.holder if isinstance(place.holder, np.ndarray | list) else []
+    if isinstance(row, np.ndarray) and isinstance(place.field, tuple):
+        row = row[place.field[:-1]]
     if size == 1.0 and np.count_nonzero(np.asarray(row, dtype=object)) == 1 < len(row):
         return "none"  # an axis
     may = [kind for kind, known in kinds.items() if among(size, known)]

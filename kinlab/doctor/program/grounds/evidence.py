@@ -74,6 +74,8 @@ _OWN = ("cell", "mass", "centre_distance", "Izz", "joint_Izz", "parameter")
 """The arm's own numbers, which do not vary: any value may meet one."""
 _LAYOUTS = ("entries swapped", "rows", "rows swapped", "transposed", "order", "index")
 """Kinds of edit that make another of the textbooks' functions of one."""
+_OF_NUMBERS = ("factor", "missing factor", "extra factor", "power", "missing term", "extra term")
+"""Kinds of edit that leave nothing of a textbook's function as it is."""
 _WHOLLY = ("sign", "factor")
 """Kinds of edit that leave a value right at no pass, where they change it as a whole."""
 _STATES = ("q", "qd", "qdd", "positions", "velocities", "accelerations", "given")
@@ -154,6 +156,10 @@ class Grounds:
         self._below()
         self.helpers, self.mirrored = true_helpers(trial, observed)
         self.crossing = {k for k in self.helpers if self._has_one_order(trial.trees[k])}
+
+    def spoils_a_helper(self, edit: ProgramEdit) -> bool:
+        """Whether a function would be spoilt that is right whatever it is given."""
+        return edit.kind in _OF_NUMBERS and edit.part in self.helpers
 
     def against(self, edit: ProgramEdit) -> float:
         """What an edit costs more than it would where nothing is known to be right."""

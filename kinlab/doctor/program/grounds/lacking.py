@@ -25,7 +25,7 @@ from kinlab.doctor.program.places import ANGLES, ProgramEdit, number
 from kinlab.doctor.program.trial import Trial
 from kinlab.tolerances import TOLERANCES
 
-_ATOMS = 18
+_ATOMS = 22
 """Numbers of which a product may be, those that stand most often."""
 _FACTORS = 4
 """Factors of a product."""
@@ -61,18 +61,32 @@ def lacking_terms(
         if here.part not in tables:
             idle = _unread(trial, scope)
             tables[here.part] = _Products(trial.trees[here.part], observed, len(known), idle)
-        own = {ast.unparse(one) for one in summands(here.node)}
+        sum_, below = _over(here.node)
+        share = np.ones(len(known)) if below is None else _firsts(observed, below, len(known))
+        if share is None:
+            continue
+        own = {ast.unparse(one) for one in summands(sum_)}
         line = statement_of(here.above).lineno
-        last = factors([*summands(here.node)][-1])
-        made = tables[here.part].making(things - value)
+        last = factors([*summands(sum_)][-1])
+        made = tables[here.part].making((things - value) * share)
         made.sort(key=lambda one: abs(one[2] - len(last)))  # as long as what stands beside it
         for op, product, count in made[:_MOST]:
             term = _as_beside(product, last)
             counted = {*scope.counters} - scope.counting  # by loops that are none around it
             late = any(scope.set_at.get(name, 0) > line for name in names(term))
             if not late and counted.isdisjoint(names(term)) and ast.unparse(term) not in own:
-                new = ast.BinOp(here.node, op, term)
+                new = ast.BinOp(sum_, op, term)
+                new = new if below is None else ast.BinOp(new, ast.Div(), below)
                 yield here.instead(new, "missing term", _COST + _LONGER * (count - 2))
+
+
+def _over(node: ast.expr) -> tuple[ast.expr, ast.expr | None]:
+    """A sum in brackets, and what it is divided by; any other expression as it is."""
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Div):
+        above = node.left
+        if isinstance(above, ast.BinOp) and isinstance(above.op, ast.Add | ast.Sub):
+            return above, node.right
+    return node, None
 
 
 def _as_beside(product: ast.expr, beside: list[ast.expr]) -> ast.expr:
@@ -149,8 +163,12 @@ class _Products:
         self.ways: list[tuple[int, ...]] = []
         for count in range(2, _FACTORS + 1):
             self.ways += combinations_with_replacement(range(len(self.texts)), count)
-        self.sizes = np.array([sizes[[*way]].sum(axis=0) for way in self.ways]).reshape(-1, states)
-        self.signs = np.array([signs[[*way]].prod(axis=0) for way in self.ways]).reshape(-1, states)
+        # what is left out of shorter ones is a factor 1
+        one = np.zeros((1, states))
+        each = np.array([[*way, *[-1] * (_FACTORS - len(way))] for way in self.ways], dtype=int)
+        each = each.reshape(-1, _FACTORS)
+        self.sizes = np.concatenate([sizes, one])[each].sum(axis=1)
+        self.signs = np.concatenate([signs, one + 1])[each].prod(axis=1)
         self.order = np.argsort(self.sizes[:, 0], kind="stable")
 
     def _is_named(self, text: str) -> bool:
@@ -182,7 +200,10 @@ class _Products:
         ]
 
     def _term(self, k: int, front: float) -> ast.expr:
-        factors = [copied(self.atoms[self.texts[n]][0]) for n in self.ways[k]]
+        factors: list[ast.expr] = []
+        for n, power in Counter(self.ways[k]).items():
+            one = copied(self.atoms[self.texts[n]][0])
+            factors.append(one if power == 1 else ast.BinOp(one, ast.Pow(), number(power)))
         factors = [number(2 if front == 2.0 else front)] * (front != 1.0) + factors
         return reduce(lambda one, other: ast.BinOp(one, ast.Mult(), other), factors)
 

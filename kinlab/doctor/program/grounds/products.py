@@ -37,10 +37,17 @@ def missing_products(
         scopes: those of its parts.
         known: their dimensions.
     """
-    for here, scope in standing(trial, scopes, is_whole):
+    for here, scope in standing(trial, scopes, _may_lack_one):
         size = known.of(here.node)
         if size and observed.shape(here.node) == ():
             yield from _missing(here, scope, known, size)
+
+
+def _may_lack_one(here: Here) -> bool:
+    """Whether it is all that is set, or a sum in brackets: ``(a*x + b*y)/c``."""
+    inside = isinstance(here.parent, ast.BinOp) and isinstance(here.parent.op, ast.Mult | ast.Div)
+    sum_ = isinstance(here.node, ast.BinOp) and isinstance(here.node.op, ast.Add | ast.Sub)
+    return is_whole(here) or (inside and sum_)
 
 
 def is_whole(here: Here) -> bool:
@@ -65,7 +72,12 @@ def _missing(here: Here, scope: Scope, known: Dimensions, size: float) -> Iterat
 def _factors(scope: Scope, known: Dimensions) -> list[tuple[str, ast.expr, float]]:
     """What has a dimension, and what that is."""
     every = ((text, node, known.of_text(text)) for text, node in scope.simple(()))
-    return [(text, node, each) for text, node, each in every if each][:_FACTORS]
+    sized = (
+        (text, node, each)
+        for text, node, each in every
+        if each is not None and abs(each) > TOLERANCES.tried_further
+    )
+    return [*islice(sized, _FACTORS)]
 
 
 def _products(

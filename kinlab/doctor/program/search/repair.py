@@ -31,6 +31,7 @@ from kinlab.doctor.program.search.asked import Asked
 from kinlab.doctor.program.search.chosen import chosen
 from kinlab.doctor.program.search.company import in_company
 from kinlab.doctor.program.search.solved import Solver
+from kinlab.doctor.program.search.units import Units
 from kinlab.doctor.program.search.work import Work
 from kinlab.doctor.program.trial import FailedError, NoProgramError, Trial, quietly
 from kinlab.doctor.program.variants import Variants
@@ -93,6 +94,8 @@ _NUMBER = 1.15
 """Cost of an edit above which it is rather a wrong number that explains the program."""
 _SOLVED = 20_000_000
 """Work beyond that for single edits in which wrong numbers are solved for."""
+_UNITS = 2
+"""Of the work for single edits the part for functions that are asked alone."""
 _STANDING = 2
 """Edits beside which some number would do too easily."""
 
@@ -133,6 +136,7 @@ class LineSearch:
         self.tried: list[tuple[ProgramEdit, Array]] = []
         self._alone: list[ProgramRepair] | None = None
         self.parallel: list[ProgramRepair] = []
+        self.ahead: list[ProgramEdit] = []
         self.most, self.thorough = _WORK, True
         self.trial, self.case = Trial(program), case
         self.asked = Asked(self.trial, case, wanted, allowed)
@@ -189,7 +193,7 @@ class LineSearch:
         """
         other = copy.copy(self)
         other.stand, other.tried, other.thorough = stand, [], thorough
-        other._alone = None
+        other._alone, other.ahead = None, []
         if not thorough:
             other.most, other.in_lanes, other.heavy = self.most // _SHARE, 0, False
         other.work = copy.copy(self.work)
@@ -223,9 +227,13 @@ class LineSearch:
         with quietly():
             most = _WEIGHED if self.thorough else _WEIGHED // 3
             every = chosen(self.asked, self.observed, self.known, self.dimensions, below, most)
+            every = [edit for edit in every if not self.evidence.spoils_a_helper(edit)]
             more = self._waits()
             dear = {edit: self.likely(edit) + more[edit.part] for edit in every}
             tried = self._in_turn(sorted(every, key=dear.__getitem__))
+            if sum(map(self.work.of, tried)) > limit:
+                self.ahead = self._ahead(tried, limit // _UNITS)
+                tried = [*self.ahead, *(x for x in tried if x not in {*self.ahead})]
             variants = Variants(self.trial, tried)
             for turn, edit in enumerate(tried):
                 farthest = best + (_DOUBTED if doubted else _TIED)
@@ -263,6 +271,11 @@ class LineSearch:
             elif not self.stand and (found[0].edits[-1].part != DATA or moves(found[0].edits[-1])):
                 found = self._numbers(strange=True) + found
         return found
+
+    def _ahead(self, tried: list[ProgramEdit], most: int) -> list[ProgramEdit]:
+        """The edits with which a function, asked alone, answers what a textbook has."""
+        units = Units(self.asked, self.observed, self.evidence, self.work)
+        return units.repairs(tried, most)
 
     def _in_lanes(self, rest: list[ProgramEdit]) -> list[ProgramRepair]:
         """Those of further edits that make the program right: they are run all at once.
@@ -449,7 +462,7 @@ class LineSearch:
         """
         found: list[tuple[float, int, ProgramRepair]] = []
         solver = Solver(self.asked, self.observed, self.evidence, self.work)
-        most = (self.most if self.stand else max(_ALONE, self.work.done)) + _SOLVED
+        most = (max(_ALONE, self.work.done) if self.thorough else self.most) + _SOLVED
         for value, edit in solver.edits(most, strange):
             with changed(self.trial, (edit,)):
                 repair = self.verdict((*self.stand, edit))

@@ -49,6 +49,10 @@ class Work:
         run = self.longer * self.amounts[edit.part] * self.first // self.watched
         return run + (_NODE * self.nodes[edit.part] if edit.part >= 0 else 0)
 
+    def of_one_call(self, edit: ProgramEdit, calls: int) -> int:
+        """What one of so many calls of a function at a state amounts to, to try an edit in it."""
+        return self.of(edit) // max(1, self.first * calls)
+
     def of_all(self, count: int) -> int:
         """What running the whole program at so many states amounts to."""
         return self.amounts[0] * count // self.watched

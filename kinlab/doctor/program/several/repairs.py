@@ -46,6 +46,8 @@ _NEXT, _GAINED, _LOST = 0.07, 0.06, 0.12
 for each statement; what it must cost less for each that it spoils."""
 _COMPARED = 5
 """Single edits in place of one of which that is looked at."""
+_PLAIN, _PLAINEST = ("sign", "sin/cos"), 900
+"""The plainest edits, of which any two are tried, whatever speaks against them; how many."""
 _NAMED = 3
 """Repairs that are kept."""
 _STEPS = 3
@@ -209,6 +211,10 @@ class _Several:
             found = min(found, next(filter(None, pairs), found), key=lambda some: some[0].cost)
         if found:
             return self.settled(search, found)
+        if search.ahead:
+            found = self._beside_a_right_function(search)
+            if found:
+                return self.settled(search, found)
         in_order = InOrder(search, known, 0 if search.stand else _IN_ORDER)
         one_by_one = in_order.found()
         found = [] if one_by_one is None else self._fewer(search, [one_by_one])
@@ -232,6 +238,8 @@ class _Several:
                 break
         if not found and not search.stand:
             found = tried.likeliest(known, together.beside_lanes())
+        if not found and together.usable and not search.stand:
+            found = self._plain(search, tried)
         if not found and together.usable and not search.stand:
             found = tried.likeliest(known, known.adding_up(3) + together.threes())
             found = found or tried.likeliest(known, together.any_three())
@@ -266,6 +274,32 @@ class _Several:
                 found = tried.likeliest(joined, joined.triples())
             found = self.settled(search, found)
         return found
+
+    @staticmethod
+    def _plain(search: LineSearch, tried: _Tried) -> list[ProgramRepair]:
+        """Two of the plainest slips, whatever speaks against each alone.
+
+        What a coordinate's sign and its torque's make of a program has every textbook's name.
+        """
+        plain = (one for one in search.tried if one[0].kind in _PLAIN)
+        some = sorted(plain, key=lambda one: one[0].cost)[:_PLAINEST]
+        known = effects_of(search, some)
+        if known is None or not known.alike:
+            return []
+        pairs = (tried.likeliest(known, x) for x in TriedTogether(search, known).pairs())
+        return next(filter(None, pairs), [])
+
+    def _beside_a_right_function(self, search: LineSearch) -> list[ProgramRepair]:
+        """What is left beside an edit with which a function is right, asked alone."""
+        for one in _apart(search.ahead)[:_WAYS]:
+            with changed(search.trial, (one,)):
+                here = _beside(search, (one,), thorough=not search.stand)
+                found = here.singles()
+                if not found and not search.stand:
+                    found = self.found(here)
+            if found or not search.stand:
+                return found
+        return []
 
     def _last(self, search: LineSearch, ways: list[Way]) -> list[ProgramRepair]:
         """The one edit more with which all is right, if there is work left for it."""

@@ -8,38 +8,25 @@ edit with which a statement gives what a textbook has, where it did not before, 
 from __future__ import annotations
 
 import ast
-import copy
-from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-
-from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import called, copied, nodes
-from kinlab.doctor.glossary.textbook import Glossary
-from kinlab.doctor.program.grounds.evidence import zeros_and_ones
-from kinlab.doctor.program.grounds.suspects import TERM
 from kinlab.doctor.program.places import ProgramEdit, changed
+from kinlab.doctor.program.search.recognised import QUANTITY, Recognised
 from kinlab.doctor.program.search.repair import LineSearch
 from kinlab.doctor.program.several.effects import Way
 from kinlab.doctor.program.trial import FieldChange, NoProgramError
 from kinlab.doctor.program.variants import Variants
-from kinlab.tolerances import TOLERANCES
 
 _FIRST = 1
 """States at which statements are watched."""
-_GIVEN = ("q", "qd", "qdd", "positions", "velocities", "accelerations", "load")
-"""What a program is given, and needs not find."""
-_SHAPES = ((), (2,), (3,), (6,), (3, 3), (4, 4), (6, 6))
-"""Shapes of most values."""
 _STATEMENT, _MANY = 0.04, 5
 """What each statement that it makes right speaks for an edit, and how many do."""
 _FRUITLESS = 2
 """The part of the work after which no step is looked for where there is none yet."""
-_WEIGHTS = np.random.default_rng(5).uniform(0.5, 1.5, 36)
 
 
 @dataclass(frozen=True)
@@ -74,8 +61,6 @@ class Watched:
 
 
 _NEVER = Watched()
-_QUANTITY = 2
-"""What is a textbook's, and no term alone."""
 
 
 class Witnesses:
@@ -90,18 +75,9 @@ class Witnesses:
 
     def __init__(self, search: LineSearch) -> None:
         self.search = search
-        self.done, self.watching = 0, False
-        self.grounds = copy.copy(search.evidence)
-        self.grounds.known = search.evidence.known[:_FIRST]
-        self.known: dict[tuple[Any, bytes], int | None] = {}
-        every = (
-            row for one in self.grounds.known for rows, _ in one.things.values() for row in rows
-        )
-        ranks = sorted(every, key=lambda row: -row[0])
-        self.terms = {what for what, rank in {x.what: k for k, x in ranks}.items() if rank >= TERM}
+        self.done = 0
+        self.known = Recognised(search.evidence)
         self.told: dict[int, Watched] = {}
-        self.marks = {shape: _marks(self.grounds.known, shape) for shape in _SHAPES}
-        self.there = search.observed.values(len(search.asked.watched))
         self.places = [place for tree in search.trial.trees for place in _places(tree)]
         self.numbers = {(id(holder), field): n for n, (holder, field) in enumerate(self.places)}
         self.inside = _inside(self.places)
@@ -116,12 +92,12 @@ class Witnesses:
             most: operations that may be done.
         """
         trial = self.search.trial
-        if not self.grounds.known or not self.places:
+        if not self.known.anything or not self.places:
             return []
         found: list[FirstStep] = []
         with trial.changed({*range(len(trial.trees))}, self._saws()):
             before = self._right()
-            self.known, self.watching = {}, True
+            self.known.beside(self.search.observed.values(len(self.search.asked.watched)))
             watched = [tuple(_watched(edit, self.numbers) for edit in way) for way in ways]
             variants = Variants(trial, [way[0] for way in watched if len(way) == 1])
             for way, own in zip(ways, watched, strict=True):
@@ -171,51 +147,10 @@ class Witnesses:
     def _see(self, n: int, value: Any) -> Any:
         told = self.told.setdefault(n, Watched())
         told.count += 1
-        if (good := self._textbook(value)) is not None:
+        if (good := self.known.rank(value)) is not None:
             told.good = good if told.good is None else min(good, told.good)
-            told.fine += good == _QUANTITY
+            told.fine += good == QUANTITY
         return value
-
-    def _textbook(self, value: Any) -> int | None:
-        """Whether it is what a textbook has, or a term; None of numbers that anything could be."""
-        if isinstance(value, list | tuple):
-            try:
-                value = np.array(value, dtype=float)
-            except (ValueError, TypeError):
-                return None
-        array = np.asarray(value)
-        if array.dtype != float or not array.size:
-            return None
-        key = (array.shape, array.tobytes())
-        if key not in self.known:
-            self.known[key] = self._looked_up(array)
-        return self.known[key]
-
-    def _looked_up(self, array: Array) -> int | None:
-        flat = array.ravel()
-        if not np.isfinite(flat).all():
-            return 0
-        if zeros_and_ones(flat):
-            return None
-        marks = self.marks.get(array.shape)
-        if marks is not None:  # most are nothing known, which one number of each tells
-            weights, near = _WEIGHTS[: flat.size], self.grounds.near
-            mark, wide = float(flat @ weights), 10 * near * float(np.abs(flat) @ weights)
-            k = bisect_left(marks, mark - wide)
-            if k == len(marks) or marks[k] > mark + wide:
-                return 0
-        if self.watching and self._is_there(array):
-            return None  # another's value, which what was left out leaves
-        sense = self.grounds.thing([array])
-        if sense is None:
-            return 0
-        return None if sense.what in _GIVEN else 1 if sense.what in self.terms else 2
-
-    def _is_there(self, value: Array) -> bool:
-        """Whether an expression had a value before there was an edit."""
-        near = TOLERANCES.same_relation * float(np.abs(value).max())
-        some = self.there.get(value.shape)
-        return some is not None and bool((np.abs(some - value.ravel()).max(axis=1) <= near).any())
 
 
 def _gained(before: dict[int, Watched], after: dict[int, Watched], inside: dict[int, int]) -> int:
@@ -258,19 +193,6 @@ def _gained_sometimes(before: dict[int, Watched], after: dict[int, Watched]) -> 
             return 0
         gained += now.fine - old.fine
     return gained
-
-
-def _marks(known: Sequence[Glossary], shape: tuple[int, ...]) -> list[float]:
-    """One number of each thing of a shape, sorted; of plane vectors, too, what is left of them."""
-    if not known:
-        return []
-    size = int(np.prod(shape, initial=1))
-    _rows, things = known[0].things.get(shape, ((), np.empty((0, size))))
-    found = [*(things.reshape(len(things), size) @ _WEIGHTS[:size])]
-    if known[0].plane and shape in ((), (2,)):
-        _rows, vectors = known[0].things.get((3,), ((), np.empty((0, 3))))
-        found += [*(vectors[:, 2:] if shape == () else vectors[:, :2]) @ _WEIGHTS[:size]]
-    return sorted(map(float, found))
 
 
 def _watched(edit: ProgramEdit, numbers: dict[tuple[int, Any], int]) -> ProgramEdit:

@@ -19,6 +19,7 @@ from kinlab.doctor.program.edits.numbers.data import NumberPlace, measured, numb
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import ANGLES, DATA, Here, ProgramEdit, number, places
 from kinlab.doctor.program.trial import Trial
+from kinlab.fivebar import FiveBar
 from kinlab.model.dh import DHTable
 from kinlab.tolerances import TOLERANCES
 
@@ -148,13 +149,25 @@ def _without_gravity(trial: Trial, observed: Observed, down: Array) -> Iterator[
                     yield replace(here.instead(new, "number", 1.05), of_the_arm=True)
 
 
+def sizes_of_legs(robot: FiveBar) -> dict[str, list[float]]:
+    """The sizes of a five-bar's lengths, masses, and moments of inertia, each once."""
+    lengths = [*robot.l1, *robot.l2, robot.e, 2 * robot.e, *robot.crank_com, *robot.rod_com]
+    moments = [*robot.crank_inertia, *robot.rod_inertia, *robot.rotor_inertia]
+    masses = [*robot.crank_mass, *robot.rod_mass, robot.payload]
+    return _each_once({"length": lengths, "mass": masses, "moment": moments})
+
+
 def sizes_of(table: DHTable) -> dict[str, list[float]]:
     """The sizes of the arm's lengths, masses, and moments of inertia, each once."""
     lengths = [x for k in table.links for x in (k.a, k.d, *np.ravel(k.com))]
     lengths += _from_the_joint(table)
     lengths += [*np.ravel(np.asarray(table.tool)[:3, 3]), *np.ravel(np.asarray(table.base)[:3, 3])]
     moments = [x for k in table.links for x in np.ravel(k.inertia)]
-    kinds = {"length": lengths, "mass": [k.mass for k in table.links], "moment": moments}
+    masses = [k.mass for k in table.links]
+    return _each_once({"length": lengths, "mass": masses, "moment": moments})
+
+
+def _each_once(kinds: dict[str, list[float]]) -> dict[str, list[float]]:
     return {
         kind: sorted({float(f"{abs(x):.12g}") for x in some if x}) for kind, some in kinds.items()
     }

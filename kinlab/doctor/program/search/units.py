@@ -1,0 +1,147 @@
+"""Functions of a program, each asked alone what it was asked first.
+
+A helper that is asked many times, at states beside or for one link after another, is run once to
+see what an edit makes of it: the mass matrix is right or wrong whatever is done with it.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from types import FunctionType
+from typing import Any
+
+from kinlab.doctor.program.grounds.evidence import Grounds
+from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.places import DATA, ProgramEdit
+from kinlab.doctor.program.search.asked import Asked
+from kinlab.doctor.program.search.recognised import QUANTITY, Recognised, as_numbers
+from kinlab.doctor.program.search.work import Work
+from kinlab.doctor.program.trial import FailedError, NoProgramError, Trial, quietly
+from kinlab.doctor.program.variants import Variants
+
+_OFTEN = 2
+"""Calls of a function from which on it is worth while to ask it alone."""
+_LONGEST = 12
+"""Values of one answer that are looked at."""
+
+Ranks = list[int | None]
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A function of a program, and what it was asked first.
+
+    Attributes:
+        part: its number.
+        given: by position.
+        named: by name.
+        calls: how often it is asked at one state.
+    """
+
+    part: int
+    given: tuple[Any, ...]
+    named: dict[str, Any]
+    calls: int
+
+
+class Units:
+    """The functions of a wrong program that do not answer what a textbook has.
+
+    Args:
+        asked: the program, and what it should answer.
+        observed: its expressions.
+        evidence: what is right in it.
+        work: what trying edits amounts to.
+    """
+
+    def __init__(self, asked: Asked, observed: Observed, evidence: Grounds, work: Work) -> None:
+        self.trial, self.work = asked.trial, work
+        self.known = Recognised(evidence)
+        self.known.beside(observed.values(len(asked.watched)))
+        self.wrong: dict[int, Unit] = {}
+        self.before: dict[int, Ranks] = {}
+        if not self.known.anything or len(self.trial.trees) == 1:
+            return
+        for k, unit in _asked_often(self.trial, asked.states[0]).items():
+            ranks = self._ranks(unit)
+            if 0 in ranks:
+                self.wrong[k], self.before[k] = unit, ranks
+
+    def repairs(self, edits: Sequence[ProgramEdit], most: int) -> list[ProgramEdit]:
+        """Those of some edits with which one of the functions answers what a textbook has.
+
+        Args:
+            edits: the likeliest first.
+            most: operations that may be done.
+        """
+        some = [edit for edit in edits if edit.part != DATA and [*self._of(edit)]]
+        variants, found, done = Variants(self.trial, some), [], 0
+        for edit in some:
+            units = [*self._of(edit)]
+            done += sum(self.work.of_one_call(edit, unit.calls) for unit in units)
+            if done > most:
+                break
+            try:
+                with self.trial.changed({edit.part}, edit.changes, variants.of(edit)):
+                    if any(map(self._is_right, units)):
+                        found.append(edit)
+            except NoProgramError:
+                continue
+        self.work.done += done
+        return found
+
+    def _of(self, edit: ProgramEdit) -> Iterator[Unit]:
+        """The wrong functions that an edit reaches."""
+        return (unit for k, unit in self.wrong.items() if k in self.trial.above[edit.part])
+
+    def _is_right(self, unit: Unit) -> bool:
+        """Whether more of what a function answers is a textbook's now, and as much as was."""
+        before, now = self.before[unit.part], self._ranks(unit)
+        if len(now) != len(before):
+            return False
+        pairs = [*zip(before, now, strict=True)]
+        return (0, QUANTITY) in pairs and not any(old and new == 0 for old, new in pairs)
+
+    def _ranks(self, unit: Unit) -> Ranks:
+        """What the values of a function's answer are; none where it fails."""
+        try:
+            answer = self.trial.part(unit.part, *copy.deepcopy((unit.given, unit.named)))
+        except FailedError:
+            return []
+        apart = isinstance(answer, tuple | list) and as_numbers(answer) is None
+        return [self.known.rank(one) for one in (answer if apart else [answer])[:_LONGEST]]
+
+
+def _asked_often(trial: Trial, state: tuple[Any, ...]) -> dict[int, Unit]:
+    """The functions that are asked often at one state, by their numbers."""
+    first: dict[int, tuple[tuple[Any, ...], dict[str, Any]] | None] = {}
+    counts: dict[int, int] = {}
+    originals = [trial.placed(k) for k in range(len(trial.trees))]
+
+    def listening(k: int, function: Callable[..., Any]) -> Callable[..., Any]:
+        def listened(*given: Any, **named: Any) -> Any:
+            counts[k] = counts.get(k, 0) + 1
+            if k not in first:
+                try:
+                    first[k] = copy.deepcopy((given, named))
+                except Exception:  # noqa: BLE001  what cannot be copied is not asked alone
+                    first[k] = None
+            return function(*given, **named)
+
+        return listened
+
+    try:
+        for k, part in enumerate(trial.program.parts):
+            if k and not part.sets and part.kept is FunctionType:
+                trial.place(k, listening(k, originals[k]))
+        with quietly(), trial.as_loaded():
+            trial.function(*(x.copy() for x in state))
+    except FailedError:
+        return {}
+    finally:
+        for k, function in enumerate(originals):
+            trial.place(k, function)
+    often = {k: both for k, both in first.items() if both is not None and counts[k] >= _OFTEN}
+    return {k: Unit(k, given, named, counts[k]) for k, (given, named) in often.items()}
