@@ -20,7 +20,7 @@ from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.glossary.facts import holding
 from kinlab.doctor.linkages import as_right, five_bar
 from kinlab.doctor.linkages.mechanisms import mechanism_beside
-from kinlab.doctor.shapes import in_full
+from kinlab.doctor.shapes import in_full, parts_of
 from kinlab.doctor.text.claims import alone, claimed_of, named_alone, with_forces, with_wrench
 from kinlab.doctor.text.habits import with_habits
 from kinlab.doctor.text.joints import joint_values
@@ -274,7 +274,7 @@ def _by_quantity(
     done: dict[str, list[Diagnosis]] = {}
     for plain, formulas in wanted.items():
         answers = _answers(plain, formulas, titles, robot, file, samples, seed)
-        done[plain] = list(_of_quantity(plain, answers, titles))
+        done[plain] = list(_of_quantity(plain, answers, titles, file.parts))
         if plain == "statics" and not all(one.agrees for one in done[plain]):
             turned = _in_tool_axes(formulas, titles, robot, file, samples, seed)
             settled = [all(x.agrees or x.known for x in found) for found in (done[plain], turned)]
@@ -285,7 +285,7 @@ def _by_quantity(
                 there = _answers(plain, formulas, titles, robot, file, samples, seed, (force,))
                 if not np.array_equal(there[1], answers[1]):
                     felt = True
-                    found = [*_of_quantity(plain, there, titles)]
+                    found = [*_of_quantity(plain, there, titles, file.parts)]
                     done[plain] = _simpler(done[plain], found, force, formulas)
             if felt:  # what is taken out may be of a force that is taken as zero
                 done[plain] = [
@@ -346,7 +346,13 @@ def _in_tool_axes(
     there = {label.replace("statics", "statics_tool"): text for label, text in formulas.items()}
     named = {label.replace("statics", "statics_tool"): name for label, name in titles.items()}
     answers = _answers("statics_tool", there, named, robot, file, samples, seed)
-    found = list(_of_quantity("statics_tool", answers, named))
+    parts = {
+        name.replace("statics", "statics_tool"): [
+            one.replace("statics", "statics_tool") for one in part
+        ]
+        for name, part in file.parts.items()
+    }
+    found = list(_of_quantity("statics_tool", answers, named, parts))
     said = _("the wrench is read in tool axes")
     return [_noted(one, said) for one in found]
 
@@ -489,7 +495,9 @@ def _alone_in(case: Case, label: str) -> Case:
     return replace(case, index=split_name(label)[1]) if case.quantity.domain is FIVEBAR else case
 
 
-def _of_quantity(plain: str, answers: Answers, titles: dict[str, str]) -> Iterable[Diagnosis]:
+def _of_quantity(
+    plain: str, answers: Answers, titles: dict[str, str], parts: Mapping[str, list[str]]
+) -> Iterable[Diagnosis]:
     case, engine, labels, formulas, values = answers
     if len(formulas) == len(labels) and case.quantity.domain is not FIVEBAR:
         hand = np.stack([values[label] for label in labels], axis=-1)
@@ -501,8 +509,9 @@ def _of_quantity(plain: str, answers: Answers, titles: dict[str, str]) -> Iterab
     if case.quantity.domain is FIVEBAR:
         yield from _of_five_bar(case, formulas, values, titles)
         return
-    if plain in ("coriolis_matrix", "jacobian"):
-        yield from _parts_given(plain, case, engine, formulas, values, titles)
+    asked = {name: part for name, part in parts.items() if split_name(name)[0] == plain}
+    if plain in ("coriolis_matrix", "jacobian") or asked:
+        yield from _parts_given(plain, case, engine, formulas, values, titles, asked)
     for label, answer in values.items():
         _plain, index = split_name(label)
         part = replace(case, index=index)
@@ -551,17 +560,21 @@ def _parts_given(
     formulas: dict[str, Written],
     values: dict[str, Array],
     titles: dict[str, str],
+    asked: Mapping[str, list[str]],
 ) -> Iterable[Diagnosis]:
     """Parts that are whole, taken out of the entries, which are judged each for itself.
 
-    Rows of C, for one row has many valid splits; the linear or the angular half of a Jacobian.
+    Those that are asked for; rows of C, for one row has many valid splits; the linear or the
+    angular half of a Jacobian.
     """
     n = case.robot.n
-    parts = {f"{plain}[{i}]": [i] for i in range(n)}
+    rows = {f"{plain}[{i}]": [i] for i in range(n)} if plain == "coriolis_matrix" else {}
     if plain == "jacobian":
-        parts = {"jacobian[:3]": [0, 1, 2], "jacobian[3:]": [3, 4, 5]}
-    for name, rows in parts.items():
-        labels = [f"{plain}[{i},{j}]" for i in rows for j in range(n)]
+        rows = {"jacobian[:3]": [0, 1, 2], "jacobian[3:]": [3, 4, 5]}
+    whole = {
+        name: [f"{plain}[{i},{j}]" for i in some for j in range(n)] for name, some in rows.items()
+    }
+    for name, labels in {**whole, **asked}.items():
         if not all(label in values for label in labels):
             continue
         _plain, index = split_name(name)
@@ -587,7 +600,9 @@ def read_formulas(document: Mapping[str, Any], path: str) -> FormulaFile:
         robot = mechanism_beside(name, path) if isinstance(name, str) and name else None
     except KinlabError:
         robot = None
-    return formula_file(document, path, holds=None if robot is None else holding(robot))
+    if robot is None:
+        return formula_file(document, path)
+    return formula_file(document, path, holds=holding(robot), parts_of=parts_of(robot))
 
 
 def robot_of(file: FormulaFile) -> Mechanism:

@@ -36,6 +36,7 @@ from kinlab.doctor.linkages.as_right import times
 from kinlab.doctor.linkages.mechanisms import mechanism
 from kinlab.doctor.program.elsewhere import lines_elsewhere
 from kinlab.doctor.program.words import lines
+from kinlab.doctor.shapes import parts_of
 from kinlab.doctor.text.claims import VECTORS, claimed_of
 from kinlab.doctor.text.claims import alone as alone_of
 from kinlab.errors import ExpressionError, KinlabError
@@ -86,7 +87,7 @@ def diagnose(
         only = not isinstance(arm, FiveBar) and arm.n == 1 and quantity in VECTORS
         entry = alone_of(quantity) if only else quantity
         document = {"robot": arm.name, "formulas": {entry: function}}
-        file = formula_file(document, "formula", holds=holding(arm))
+        file = formula_file(document, "formula", holds=holding(arm), parts_of=parts_of(arm))
         judged = examine_formulas(file, arm, whole(samples, "samples", FEWEST), seed_of(seed))
         refuse_unjudged(judged)
         wrong = [one for one in judged if not one.agrees]

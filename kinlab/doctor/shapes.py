@@ -6,12 +6,17 @@ import re
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
+from kinlab.check.quantities.registry import quantity as find_quantity
+from kinlab.check.quantities.registry import split_name
 from kinlab.check.quantities.special import square_rows
 from kinlab.doctor.changes import Mechanism
-from kinlab.errors import StructureError
+from kinlab.errors import KinlabError, StructureError
 from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree
-from kinlab.formulas.files import FormulaFile
+from kinlab.formulas.files import FormulaFile, PartsOf
+from kinlab.formulas.grids import Grid
 from kinlab.host.language import _
 from kinlab.model.robot import Robot
 from kinlab.symbolic.vocabulary import is_planar
@@ -21,6 +26,37 @@ _PLACE = re.compile(r"([A-Za-z]+)(?:([1-9])([1-9])|\[(\d),(\d)\])")
 _HOMOGENEOUS = (0, 1, 3)
 """Which rows and columns of a pose those of a planar one are."""
 _RATES = ("vx", "vy", "vz", "wx", "wy", "wz")
+
+
+def parts_of(robot: Mechanism) -> PartsOf:
+    """The entries of rows, columns and blocks of a quantity: of ``fk[:3,3]``, ``jacobian[0]``.
+
+    Args:
+        robot: whose they are.
+    """
+
+    def of(entry: str) -> Grid | None:
+        if "[" not in entry:
+            return None
+        try:
+            plain, index = split_name(entry)
+            found = find_quantity(plain)
+            if found.read is not None:
+                return None
+            arm = found.domain.load(robot)
+            shape = np.shape(found.engine(arm, *found.states(arm, 1, 0)))[1:]
+            numbers = np.arange(int(np.prod(shape))).reshape(shape)[index]
+        except (KinlabError, IndexError):
+            return None  # told where it is judged
+        if not 1 <= numbers.ndim <= 2 or not numbers.size:
+            return None
+        rows = numbers if numbers.ndim == 2 else numbers[:, None]
+        return [
+            [f"{plain}[{','.join(map(str, np.unravel_index(k, shape)))}]" for k in row]
+            for row in rows
+        ]
+
+    return of
 
 
 def in_full(file: FormulaFile, robot: Mechanism) -> tuple[FormulaFile, str]:

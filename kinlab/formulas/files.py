@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import partial
@@ -41,6 +41,8 @@ from kinlab.formulas.tree import Node
 from kinlab.host.language import N_, _
 
 _FORMULAS = 200
+PartsOf = Callable[[str], grids.Grid | None]
+"""The entries of a name that is of several, row by row; None of a name that is of one or of all."""
 
 
 @dataclass(frozen=True)
@@ -61,6 +63,7 @@ class FormulaFile:
         others: the file with another part of a chain of equalities for an entry's formula.
         remarks: what is to be said of how an entry was read.
         unread: words beside an entry's formula that may change what it claims.
+        parts: rows, columns and blocks of a quantity that were given, with their entries.
     """
 
     path: str
@@ -76,6 +79,7 @@ class FormulaFile:
     remarks: Mapping[str, str] = field(default_factory=dict)
     unread: Mapping[str, Doubt] = field(default_factory=dict)
     symbols_typed: Mapping[str, str] = field(default_factory=dict)
+    parts: Mapping[str, list[str]] = field(default_factory=dict)
 
 
 def formula_file(
@@ -83,6 +87,7 @@ def formula_file(
     place: str,
     writing: typed.Hand | None = None,
     holds: Holds | None = None,
+    parts_of: PartsOf | None = None,
 ) -> FormulaFile:
     """Reads the formulas of a TOML document.
 
@@ -96,6 +101,7 @@ def formula_file(
         place: the file, for messages.
         writing: what more of the same writer's formulas say; None looks at these.
         holds: what is known of the robot, of clauses beside a formula that say something of it.
+        parts_of: the entries of a name that is of several: of rows, columns and blocks.
 
     Raises:
         FileError: the document holds no formulas, or what is none.
@@ -132,13 +138,16 @@ def formula_file(
     for found, what in ((entries, "formulas"), (symbols, "symbols")):
         if len(found) > _FORMULAS:
             raise FileError(f"{place}: {len(found)} {what}; at most {_FORMULAS}")
+    whole = {key: grid for key in entries if parts_of and (grid := parts_of(key))}
     remarks: dict[str, str] = {}
     doubts: dict[str, tuple[str, list[tuple[str, str]]]] = {}
     for key, value in list(entries.items()):
         at = f"{place}: {key}"
-        entries[key], remarks[key], told = as_formula(_text(value, at), key, at, holds)
+        entries[key], remarks[key], told = as_formula(
+            _text(value, at), key, at, holds, key in whole
+        )
         doubts[key] = _text(value, at), told
-        parts = typed.several(entries[key], key)
+        parts = {} if key in whole else typed.several(entries[key], key)
         if parts and not parts.keys() & entries.keys():
             del entries[key]
             entries |= parts
@@ -160,7 +169,7 @@ def formula_file(
     entries = {key: solved(value, key, f"{place}: {key}") for key, value in entries.items()}
     chains = {key: typed.readings(value, key) for key, value in entries.items()}
     entries = {key: parts[0] for key, parts in chains.items()}
-    read = partial(_read, place, robot, symbols, writing)
+    read = partial(_read, place, robot, symbols, writing, whole)
     others = (read({**entries, key: part}) for key, parts in chains.items() for part in parts[1:])
     remarks = {key: remark for key, remark in remarks.items() if remark}
     file = read(entries)
@@ -169,8 +178,8 @@ def formula_file(
     )
     for key, doubt in list(doubts.items()):  # what is said of a matrix is said of its entries
         if key not in file.formulas and key in chains:
-            whole, _writing = _opened({key: chains[key][0]}, symbols, place, writing)
-            doubts |= dict.fromkeys(whole, doubt)
+            apart, _writing = _opened({key: chains[key][0]}, symbols, place, writing, whole)
+            doubts |= dict.fromkeys(apart, doubt)
     left = {key: left_over(*doubts[key], names) for key in doubts.keys() & file.formulas.keys()}
     unread = {key: words for key, words in left.items() if words}
     return replace(file, others=tuple(others), remarks=remarks, unread=unread)
@@ -204,9 +213,10 @@ def _read(
     robot: str,
     symbols: dict[str, Any],
     writing: typed.Hand | None,
+    parts: Mapping[str, grids.Grid],
     entries: dict[str, str],
 ) -> FormulaFile:
-    as_typed, writing = _opened(entries, symbols, place, writing)
+    as_typed, writing = _opened(entries, symbols, place, writing, parts)
     typed_ = {name: value for name, value in symbols.items() if isinstance(value, str)}
     entries, symbols = _plain(as_typed, symbols, place, writing)
     return FormulaFile(
@@ -222,6 +232,7 @@ def _read(
         as_typed,
         writing,
         symbols_typed=typed_,
+        parts={key: [one for row in grid for one in row] for key, grid in parts.items()},
     )
 
 
@@ -282,14 +293,18 @@ def _symbol(value: Any, place: str) -> Node:
 
 
 def _opened(
-    entries: dict[str, Any], symbols: dict[str, Any], place: str, writing: typed.Hand | None
+    entries: dict[str, Any],
+    symbols: dict[str, Any],
+    place: str,
+    writing: typed.Hand | None,
+    parts: Mapping[str, grids.Grid],
 ) -> tuple[dict[str, str], typed.Hand]:
     """Formulas as typed, a matrix as its entries; and what they say about the writing."""
     meant = [value for value in symbols.values() if isinstance(value, str)]
     if writing is None:
         writing = typed.hand([*entries.values(), *meant], symbols)
     writing = replace(writing, known=writing.known | {*symbols})
-    return grids.opened(entries, place, writing), writing
+    return grids.opened(entries, place, writing, parts), writing
 
 
 def _plain(

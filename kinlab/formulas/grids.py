@@ -303,13 +303,19 @@ def _beside(row: str) -> list[str]:
     return [entry.strip() for entry in entries if entry.strip()]
 
 
-def opened(entries: Mapping[str, str], place: str, writing: Hand | None = None) -> dict[str, str]:
+def opened(
+    entries: Mapping[str, str],
+    place: str,
+    writing: Hand | None = None,
+    parts: Mapping[str, Grid] | None = None,
+) -> dict[str, str]:
     """Each entry by a plain name, a matrix as its entries, without left sides.
 
     Args:
         entries: name to formula, both as typed.
         place: the file, for messages.
         writing: what all the writer's formulas say; None looks at these.
+        parts: the entries of those that are rows, columns or blocks of a quantity.
 
     Raises:
         ExpressionError: a name or matrix that cannot be read, a left side that is not the
@@ -327,8 +333,13 @@ def opened(entries: Mapping[str, str], place: str, writing: Hand | None = None) 
             raise refused(
                 at, N_("the formula begins with {text} =, which is another"), text=left[:40]
             )
-        whole = not (name[-1:].isdigit() or name.endswith("]"))
+        part = (parts or {}).get(key)
+        whole = part is not None or not (name[-1:].isdigit() or name.endswith("]"))
         grid = cells(right, at, writing) or (_in_a_row(right) if whole else None)
+        if part is not None:
+            for there, cell in _beside_each(part, grid, at):
+                _put(plain, there, cell, at)
+            continue
         if grid and len(grid) == len(grid[0]) == 1:
             right, grid = grid[0][0], None
         if grid and len(grid) == 1 and name not in TWO:
@@ -355,6 +366,23 @@ def opened(entries: Mapping[str, str], place: str, writing: Hand | None = None) 
                     below += f"{j}"
                 _put(plain, name + below, cell, at)
     return plain
+
+
+def _beside_each(part: Grid, grid: Grid | None, place: str) -> Iterator[tuple[str, str]]:
+    """The entries of a part of a quantity, each with what is typed for it.
+
+    Raises:
+        ExpressionError: no matrix, or one of another size.
+    """
+    rows, columns = len(part), len(part[0])
+    given = grid or [[""]]
+    if 1 in (rows, columns) and 1 in (len(given), len(given[0])):  # a row or a column
+        part, given = ([[x for row in one for x in row]] for one in (part, given))
+    if grid is None or (len(given), len(given[0])) != (len(part), len(part[0])):
+        size = f"{rows} x {columns}" if columns > 1 else str(rows)
+        raise refused(place, N_("write it as a matrix of {size} entries"), size=size)
+    for names, cells_ in zip(part, given, strict=True):
+        yield from zip(names, cells_, strict=True)
 
 
 def _in_a_row(text: str) -> Grid | None:

@@ -12,6 +12,7 @@ import unicodedata
 from collections.abc import Container, Iterable
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 
 from kinlab.errors import ExpressionError
 from kinlab.formulas.signs import latex
@@ -19,6 +20,7 @@ from kinlab.formulas.signs.beside import with_products
 from kinlab.formulas.signs.brackets import closes, parts_at
 from kinlab.formulas.signs.degrees import in_radians
 from kinlab.formulas.signs.letters import ABOVE, BELOW, SIGNS, WIDE, ascii_text, with_dots
+from kinlab.formulas.signs.named import is_named, is_named_elsewhere, plain_name
 from kinlab.formulas.signs.refusals import refused
 from kinlab.formulas.signs.remarks import without_remarks
 from kinlab.host.language import N_, _
@@ -617,6 +619,27 @@ def says_what_it_is(text: str) -> bool:
     return bool(_BY_DEFINITION.search(text.replace("−", "-").strip(" .$")))
 
 
+_EITHER = re.compile(
+    r"(?P<first>[=({\[,$]\s*)?(?P<sign>\\(?:pm|mp)(?![A-Za-z])|[±∓]|\+\s?/\s?-(?!\d))\s*"
+)
+"""Plus or minus, where it stands between two terms or in front of one."""
+_OF_TWO_SOLUTIONS = ("fivebar_angles", "fivebar_leg_angles")
+"""Entries of which either solution is right."""
+
+
+def _either(text: str) -> tuple[str, str]:
+    """A formula with the upper signs, and with the lower ones."""
+
+    def signed(found: re.Match[str], upper: bool) -> str:
+        plus = (found["sign"] not in ("\\mp", "∓")) is upper
+        first = found["first"] or ""
+        return f"{first}{'' if first and plus else '+ ' if plus else '- '}"
+
+    return _EITHER.sub(partial(signed, upper=True), text), _EITHER.sub(
+        partial(signed, upper=False), text
+    )
+
+
 _LONGEST_CHAIN = 8
 
 
@@ -628,8 +651,10 @@ def readings(text: str, entry: str) -> list[str]:
     r"""The equations in a chain of equalities, each with one formula, the last one first.
 
     ``M_{12} = M_{21} = ...`` is one, ``g2 = m2*g*l2*c12 = 5.886*c12`` is two; of ``J_{11} =
-    \frac{\partial x}{\partial\theta_1} = ...`` the derivative is left out.
+    \frac{\partial x}{\partial\theta_1} = ...`` the derivative is left out. ``a \pm b`` is two.
     """
+    if entry.startswith(_OF_TWO_SOLUTIONS) and _EITHER.search(text):
+        return [one for both in _either(text) for one in readings(both, entry)]
     parts = [part.strip() for part in bare(text).split("=")]
     dollars = "$" if is_latex(text) else ""
     if _EQUATION.fullmatch(entry) and len(parts) == 2 and all(parts) and parts[0] != entry:
@@ -725,6 +750,8 @@ def begins_with(line: str, entry: str, writing: Hand | None = None) -> bool:
     rotation = {own[0], asked[0]} <= {*_POSES, "r"} and own[1] == asked[1]
     return (
         own == asked
+        or is_named(entry_name(left, writing=writing), _asked(entry))
+        or (":" in asked[1] and of_one_name(entry_name(left, writing=writing), entry))
         or (rotation and bool(_ROTATION.fullmatch(own[1])))
         or (asked[0] in _POSES and _POINT.get("".join(own).replace("_", "")) == asked[1])
     )
@@ -784,6 +811,8 @@ def entry_name(text: str, place: str = "expression", writing: Hand | None = None
         return latex.LAMBDA
     if _DETERMINANT.fullmatch(typed):
         return "det J"
+    if name := plain_name(typed) or _range_name(typed):
+        return name
     if "∂" in typed:
         found = _DERIVATIVE.fullmatch(unicodedata.normalize("NFKC", typed))
         return f"{_DERIVED[found[1]]}{found[2]}" if found else typed
@@ -803,6 +832,25 @@ def entry_name(text: str, place: str = "expression", writing: Hand | None = None
     return f"{_PRINTED.get(head, head)}{index.replace('_', '')}"
 
 
+_RANGE = re.compile(
+    r"([A-Za-z]\w*)\s*(?:\[\s*([-\d:,\s]*:[-\d:,\s]*)\]|\(\s*([\d:,\s]*:[\d:,\s]*)\))"
+)
+"""Rows or columns of a matrix, as programs have them: J[:3], T(1:3,4)."""
+
+
+def _range_name(text: str) -> str:
+    """``T[:3,3]`` of ``T(1:3, 4)``; empty of what is no range."""
+    found = _RANGE.fullmatch(text)
+    if found is None or found[2]:
+        return re.sub(r"\s", "", text) if found else ""
+    places = []
+    for place in found[3].split(","):
+        first, *more = (one.strip() for one in place.split(":"))
+        start = str(int(first) - 1) if first else ""
+        places.append(":".join([start if start != "0" or not more else "", *more]))
+    return f"{found[1]}[{','.join(places)}]"
+
+
 _IN_BOOKS = (
     "M D H B A mass_matrix",
     "C coriolis_matrix",
@@ -816,6 +864,8 @@ _IN_BOOKS = (
     "j n servo_ratio",
     "v^2 tip_speed_squared",
     "T A H fk",
+    "Mdot Ddot Hdot Bdot mdot mass_matrix_dot",
+    "Jdot jacobian_dot",
     "J Jv planar_jacobian jacobian jacobian_tool jacobian_spatial",
     "tau u Q t inverse_dynamics inverse_dynamics_loaded lagrange_torques",
     "tau t statics statics_tool",
@@ -824,7 +874,7 @@ _IN_BOOKS = (
     "p momentum",
     "qdd ddq forward_dynamics",
     "q th theta inverse_kinematics inverse_kinematics_xy inverse_kinematics_xyphi "
-    "inverse_kinematics_xyz inverse_kinematics_xyzphi fivebar_angles",
+    "inverse_kinematics_xyz inverse_kinematics_xyzphi fivebar_angles fivebar_leg_angles",
 )
 """What books call the same thing: Spong's d11 and phi1, Craig's V, Siciliano's B."""
 _MEANT = tuple({word.lower() for word in group.split()} for group in _IN_BOOKS)
@@ -833,6 +883,7 @@ _ROTATION = re.compile(r"[123]{2}")
 """The places of a rotation, alone or in a transform: r11 is T11."""
 _POINT = {"x": "14", "y": "24", "z": "34", "px": "14", "py": "24", "pz": "34"}
 """Which entries of a pose the coordinates of its point are."""
+_COORDINATES = {*"xyz"}
 _ONE_NUMBER = {*"VPUTKL", "Ep", "Ek"}
 _ONE_NUMBER |= {"potential", "kinetic", "potential_energy", "kinetic_energy", "lagrangian"}
 """Entries that are one number by themselves, though V1 and V2 are parts of a vector."""
@@ -854,7 +905,15 @@ def of_one_name(left: str, name: str) -> bool:
     A name that no book has for anything else may be the writer's own.
     """
     (head, places), (mine, wanted) = _head_and_places(left), _head_and_places(name)
+    asked = _asked(name if name not in _COORDINATES else f"fk[{'xyz'.index(name)},3]")
     known = [group for group in _MEANT if head in group]
+    same = places == wanted != "" and any(mine in group for group in known)
+    if is_named(left, asked) or (is_named_elsewhere(left, asked) and not same):
+        return is_named(left, asked)
+    if ":" in wanted and not places:  # of some of its rows the whole's name, but no T of R or p
+        part = mine in _POSES and "," in wanted
+        whole = all(":" in place for place in wanted.split(",")) and not part
+        return whole and (head == mine or any(mine in group for group in known))
     if not known and not places and head != mine:
         return True
     if places != wanted and (places or wanted not in ("", "1")):
@@ -868,6 +927,9 @@ def _head_and_places(name: str) -> tuple[str, str]:
     """``("m", "12")`` of M12, ``("mass_matrix", "12")`` of ``mass_matrix[0,1]``."""
     if _SPEED_SQUARED.fullmatch(name.strip("& $")):
         return "v^2", ""
+    if ":" in name:
+        head, _blank, places = _asked(name).partition(" ")
+        return head.lower(), places
     found = _PLACES.fullmatch(name.replace(" ", ""))
     if found is None:
         return name.lower(), ""
@@ -877,3 +939,21 @@ def _head_and_places(name: str) -> tuple[str, str]:
     if head == "fivebar_equation" and len(places) == 2:  # A, B and C of a leg
         return "abc"[int(places[1]) - 1 : int(places[1])], places[0]
     return head.lower(), places.replace(",", "")
+
+
+def _asked(entry: str) -> str:
+    """An entry or a range with its places from 1: ``fk :3,4`` of ``fk[:3,3]``.
+
+    Places that leave out nothing are left out.
+    """
+    head, _bracket, inside = entry.replace(" ", "").rstrip("]").partition("[")
+    places = []
+    for place in inside.split(",") if inside else ():
+        first, *end = place.split(":")
+        if not re.fullmatch(r"\d*", first):
+            return ""  # counted from the end
+        start = str(int(first) + 1) if first and (first != "0" or not end) else ""
+        places.append(":".join([start, *end]))
+    while places and places[-1] == ":":
+        places.pop()
+    return f"{head} {','.join(places)}".strip()

@@ -297,3 +297,76 @@ def test_a_text_that_begins_with_another_joint_is_not_of_this_one() -> None:
 def test_headings_and_other_forms_are_read(robot, entry, text) -> None:
     found = kl.diagnose(robot, entry, text)
     assert found.agrees and not any("holds only" in one for one in found.remarks), str(found)
+
+
+DET = r"\det J = l_1 l_2 \sin\theta_2"
+Z3 = r"z = a_3 \sin\theta_3"
+HARMLESS = [
+    ("planar2r", "planar_position_determinant", rf"The determinant is {DET}, so the arm is singular at \theta_2 = 0 and \theta_2 = \pi."),
+    ("planar2r", "planar_position_determinant", rf"{DET}, which is singular for $\theta_2 = 0$ or $\pi$"),
+    ("planar2r", "planar_position_determinant", "det J = l1*l2*sin(q2). The arm is singular when q2 = 0 or q2 = 180°"),
+    ("planar2r", "planar_position_determinant", "det J = l1*l2*sin(q2), singulär für q2 = 0"),
+    ("planar2r", "planar_position_determinant", "det J = l1*l2*sin(q2)，因此 q2 = 0 时奇异"),
+    ("spatial3r", "fk[2,3]", f"{Z3}, where a_3 is the distance from joint 3 to the tool"),
+    ("spatial3r", "fk[2,3]", f"{Z3}, wobei a_3 der Abstand von Gelenk 3 zum Werkzeug ist"),
+    ("spatial3r", "fk[2,3]", f"{Z3}，其中 a_3 为关节3到末端的距离"),
+    ("spatial3r", "fk[2,3]", f"{Z3}, where a_2 is the distance from joint 2 to joint 3"),
+    ("planar2r_rods", "M12", r"设杆的参数如题，则 M_{12} = 0.08 + 0.15\cos q_2"),
+    ("planar2r_rods", "M22", f"{M22};  % lci: distance from joint i to the center of mass"),
+    ("planar2r_rods", "M22", f"{M22};  % l2: length of link 2"),
+    ("planar2r", "christoffel[0,1,1]", r"The Christoffel symbol is D_{122} = -m_2 l_1 l_2 \sin\theta_2; the minus sign is correct, since M_{12} falls with \theta_2."),
+    ("scara", "jacobian[1,1]", r"wie im Skript (Kap. 5): $J_{22} = a_2 \cos(\theta_1+\theta_2)$"),
+    ("planar2r", "gravity_torques[1]", r"The gravity term is g_2 = m_2 g l_2 \cos(\theta_1+\theta_2)"),
+    ("scara", "mass_matrix[2,2]", "M_{33} = m_3 + m_4 + I_{a3} [kg], constant"),
+    ("isotropic", "fivebar_leg_loop", r"支链闭环方程：(s e + l_1\cos\theta - x)^2 + (l_1\sin\theta - y)^2 - l_2^2 = 0，其中 l_1 为曲柄长度"),
+    ("stanford", "dh_poses[2,2,3]", r"The height of the wrist is z_3 = d_1 + q_3 \cos\theta_2 (cf. Paul, 1981)."),
+    ("planar2r", "jacobian[1,0]", "Durch Ableiten nach q1 folgt J21 = l1*cos(q1) + l2*cos(q1+q2) (Einheit: m)"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("robot", "entry", "text"), HARMLESS)
+def test_harmless_words_say_nothing(robot, entry, text) -> None:
+    found = kl.diagnose(robot, entry, text)
+    assert found.agrees and not any("were not read" in one for one in found.remarks), str(found)
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "text"),
+    [
+        ("planar2r", "planar_position_determinant", rf"{DET}, so the arm is singular at \theta_2 = 0 and \theta_2 = \pi/2"),
+        ("planar2r", "planar_position_determinant", f"{DET}, singular at q1 = 0"),
+        ("spatial3r", "fk[2,3]", f"{Z3}, where a_3 is the distance from joint 2 to the tool"),
+        ("spatial3r", "fk[2,3]", f"{Z3}, where a_3 is the distance from joint 2 to joint 3"),
+        ("planar2r", "x", f"{X2}, where l2 is the distance between joint 1 and joint 2"),
+        ("planar2r_rods", "M22", f"{M22};  % l2: length of link 1"),
+        ("planar2r", "x", f"{X2}, the minus sign is missing"),
+        ("single_link", "tau1", "τ = (I + m l_c²) q̈ + m g l_c cos q, where I is the moment of inertia of the rod about its joint and l_c = l/2"),
+        ("single_link", "tau1", "τ = (I + m l_c²) q̈ + m g l_c cos q, wobei I das Trägheitsmoment des Stabes um das Gelenk ist und l_c = l/2"),
+        ("planar2r", "x", f"{X2}, the minus sign must be added"),
+        ("planar2r", "x", f"{X2}, the correct sign is the minus sign"),
+        ("planar2r", "x", f"{X2}, das richtige Vorzeichen ist minus"),
+        ("planar2r", "x", f"{X2}, 正确的符号是负号"),
+        ("planar2r", "x", f"{X2}, the sign is not correct"),
+        ("planar2r", "x", f"{X2} with a minus sign"),
+        ("isotropic", "fivebar_leg_loop", r"(s e + l_1\cos\theta - x)^2 + (l_1\sin\theta - y)^2 - l_2^2 = 0, where the sign is wrong"),
+    ],
+)  # fmt: skip
+def test_words_that_are_not_so_or_deny_are_refused(robot, entry, text) -> None:
+    with pytest.raises(ExpressionError):
+        kl.diagnose(robot, entry, text)
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "text"),
+    [
+        (
+            "planar2r",
+            "planar_position_determinant",
+            "det J = l1*l2*sin(q2), not singular at q2 = 0",
+        ),
+        ("planar2r", "M12", "M12 = m2*l2^2 + m2*l1*l2*cos(q2), constant"),
+        ("planar2r", "x", f"{X2}, base turned by 180°"),
+    ],
+)
+def test_what_is_left_in_doubt_is_said(robot, entry, text) -> None:
+    assert any("were not read" in one for one in kl.diagnose(robot, entry, text).remarks)

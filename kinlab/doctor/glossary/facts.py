@@ -13,11 +13,14 @@ from functools import cached_property
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.check.quantities.special import jacobian_determinant
 from kinlab.doctor.changes import Mechanism, table_of
+from kinlab.errors import KinlabError
 from kinlab.fivebar import FiveBar
 from kinlab.formulas.handed.clauses import Claim, Holds
 from kinlab.model.dh import DHTable
 from kinlab.model.link import FRICTION, Convention
+from kinlab.model.robot import Robot
 from kinlab.symbolic.vocabulary import is_planar, vocabulary
 from kinlab.tolerances import TOLERANCES
 
@@ -44,10 +47,18 @@ _RODS = {
 _BETWEEN = {"between", "zwischen", "之间", "夹角"}
 _WHOLE = {"full", "whole", "gesamte", "volle"}
 _BEFORE = {"previous", "preceding", "before", "vorigen", "前"}
+_DISTANCE = {"distance", "distances", "abstand", "abstände", "距离"}
+_TOOL = {"tool", "tip", "tcp", "effector", "end-effector", "hand", "flange", "werkzeug"}
+_TOOL |= {"werkzeugspitze", "endeffektor", "末端", "末端执行器", "工具"}
 _SLIDING = {"stroke", "prismatic", "行程"}
 _AXES = {"axes", "gelenkachsen", "achsen", "轴"}
 _NEGATIVE = {"negative", "minus", "negativer", "negativen", "负"}
+_SIGNS = {"signed", "sign", "signs", "vorzeichen", "minuszeichen", "符号", "正负号", "负号", "正号"}
 _NUMBER = re.compile(r"(\d+(?:\.\d+)?)(?:\s*(?:m|kg|rad|kg\s?m\^?2|m/s\^?2))?")
+_PLAIN = re.compile(r"\^\{?\\circ\}?")
+_ANGLE = re.compile(
+    r"(?P<times>\d+|[kn])?(?P<pi>pi)(?:/(?P<part>\d))?|(?P<degrees>\d+(?:\.\d+)?)°|0"
+)
 _OF_EACH = ("always", "independent", "units", "mass", "zero_level")
 """Kinds of claims that are true of every arm."""
 
@@ -64,6 +75,8 @@ def holding(mechanism: Mechanism) -> Holds:
     facts = None if table is None else _Facts(table)
 
     def holds(claim: Claim) -> bool | None:
+        if claim.kind == "right_sign":
+            return _is_right_sign(claim)
         if claim.kind in _OF_EACH:
             return _is_of_joint_one(claim) if claim.kind == "zero_level" else _is_own(claim)
         known = getattr(facts, claim.kind, None)
@@ -73,8 +86,10 @@ def holding(mechanism: Mechanism) -> Holds:
 
 
 def _of_five_bar(claim: Claim) -> bool | None:
-    if claim.kind in ("always", "independent", "units"):
+    if claim.kind in ("always", "independent", "units", "either_sign"):
         return True
+    if claim.kind == "right_sign":
+        return _is_right_sign(claim)
     if claim.kind == "base_pins":
         whole = "2" in claim.words
         return whole != bool(claim.words & _HALF)
@@ -88,6 +103,11 @@ def _of_five_bar(claim: Claim) -> bool | None:
 
 def _is_of_joint_one(claim: Claim) -> bool | None:
     return True if all(number == 1 for _kind, number in claim.refs) else None
+
+
+def _is_right_sign(claim: Claim) -> bool | None:
+    """Of the sign that stands there it is said; of a sign that ought to be another it may be."""
+    return True if len(claim.words & _SIGNS) == 1 else None
 
 
 def _is_own(claim: Claim) -> bool | None:
@@ -178,6 +198,28 @@ class _Facts:
         (name,), (typed,) = claim.names, claim.words
         found = _NUMBER.fullmatch(typed)
         return None if found is None else self._is_value(name.replace("_", ""), float(found[1]))
+
+    def singular(self, claim: Claim) -> bool | None:
+        """Whether the arm is singular wherever a joint is at an angle, whatever the others."""
+        (name,), (typed,) = claim.names, claim.words
+        found = _ANGLE.fullmatch(
+            re.sub(r"[\s*{}^\\±-]|pm", "", _PLAIN.sub("°", typed.replace("π", "pi")))
+        )
+        k = int(name[1:] or 0)
+        if found is None or not self._turns(k):
+            return None
+        turn = float(found["times"] or 1) if found["times"] not in ("k", "n") else 1.0
+        value = np.pi * turn / float(found["part"] or 1) if found["pi"] else 0.0
+        value = np.deg2rad(float(found["degrees"])) if found["degrees"] else value
+        states = np.random.default_rng(0).uniform(-2.0, 2.0, (8, self.table.n))
+        there = np.array(states)
+        there[:, k - 1] = value
+        try:
+            arm = Robot.from_dh(self.table)
+            free, here = (np.abs(jacobian_determinant(arm, q)) for q in (states, there))
+        except KinlabError:
+            return None
+        return bool(np.max(here) <= TOLERANCES.formula_agrees * np.max(free))
 
     # -------- Gravity and axes
 
@@ -302,6 +344,8 @@ class _Facts:
     def length(self, claim: Claim) -> bool | None:
         if claim.words & _WHOLE and not claim.refs:
             return None
+        if claim.words & _DISTANCE and claim.names and any(k == "joint" for k, _n in claim.refs):
+            return self._reaches(claim)
         for name in claim.names:
             k = int(name[-1])
             if _is_own(claim) is False:
@@ -311,6 +355,16 @@ class _Facts:
             if name not in {**vocabulary(self.table).values, **vocabulary(self.table).others}:
                 return None
         return True if claim.names or claim.words & _AXES else None
+
+    def _reaches(self, claim: Claim) -> bool | None:
+        """Whether a length is from one joint to the next, or from the last one to the tool."""
+        own = [int(name[-1]) for name in claim.names]
+        ends = sorted(number for _kind, number in claim.refs)
+        ends += [self.table.n + 1] if claim.words & _TOOL else []
+        if len(own) != 1 or len(ends) != 2:
+            return None
+        right = self._is_value(claim.names[0], _apart(self._axes, *ends))
+        return None if right is None else right and ends[1] == ends[0] + 1
 
     def tool(self, claim: Claim) -> bool | None:
         last = [number for _kind, number in claim.refs]
@@ -334,6 +388,13 @@ class _Facts:
         return self._is_half(k) and bool(
             abs(float(axis @ moment @ axis) - rod) <= TOLERANCES.same_number * rod
         )
+
+
+def _apart(axes: Array, one: int, other: int) -> float:
+    """From a joint's axis to another one's, or to the tool behind the last; nan of what is none."""
+    if not 1 <= one < other <= len(axes):
+        return float("nan")
+    return _beside(axes[one - 1], axes[other - 1][:3, 3])
 
 
 def _beside(frame: Array, point: Array) -> float:

@@ -27,13 +27,14 @@ _UNSEEN = re.compile(
 """What LaTeX has around names and words."""
 _TOKEN = re.compile(
     r"(?P<unit>(?:(?:rad|m|kg)/s(?:\^?2|²)?|kg\s?m(?:\^?2|²)|N\s?m)(?![A-Za-z]))|"
+    r"(?P<signed>\b(?:minus|plus|negative|positive)[ ]signs?\b)|"
     rf"(?P<half>[la]\d\s*/\s*2(?![\w*/^]))|(?P<number>\d+(?:\.\d+)?(?![A-Za-df-z]))|(?P<word>[A-Za-zÄÖÜäöüßθϑ\u0307\u0308]+\d*)"
     rf"|(?P<han>[{_HAN}]+)|(?P<mark>[,;:，；：、。()（）#%\n]|\.(?!\d))|(?P<sign>[^\s])"
 )
 _DOTS = re.compile("[\u0307\u0308]")
 _HYPHEN = re.compile(r"(?<=[xyz])-(?=[A-Za-z]{4})|(?<=[A-Za-z]{3})-(?=[a-z]{3})")
 _AXIS = re.compile("[xyz]")
-_NAMED = {"half": "half-length", "unit": "si-unit"}
+_NAMED = {"half": "half-length", "unit": "si-unit", "signed": "signed"}
 """What pieces with signs in them are called among words."""
 _COMMAS = (",", "，", "、")
 _TURNED = {"negative", "minus", "negativer", "negativen", "负"}
@@ -76,12 +77,53 @@ def without_clauses(text: str, place: str, holds: Holds) -> str:
     Raises:
         ExpressionError: a clause that is not so.
     """
+    text = _without_singular(text, place, holds)
     told = list(_told(text, place, holds))
     if not told:
         return text
     for start, end in reversed(told):
         text = f"{text[:start]}{_GAP}{text[end:]}"
     return _tidied(text)
+
+
+_VALUE = (
+    r"[-±]?\s?(?:\\pm\s?)?(?:\d+(?:\.\d+)?\s?(?:°|\^\{?\\circ\}?)"
+    r"|(?:\d+|[kn])?\s?\*?\s?(?:\\?pi(?![A-Za-z])|π)(?:\s?/\s?\d)?|0)"
+)
+_ANGLE_IS = rf"\$?\\?(?:theta|θ|ϑ|vartheta|th|q)\s?_?\{{?[\d₀-₉]\}}?\s?=\s?{_VALUE}\$?"
+_OR = r"\s?(?:,|、|\b(?:and|or|und|oder|bzw\.)|和|或|与)\s?"
+_SINGULAR = re.compile(
+    r"(?:[,;.，；。]\s?)(?:(?:so|thus|hence|therefore|and|also|daher|somit|因此|所以|故|从而)[\s,，]{0,2}){0,2}"
+    r"(?:(?:that\s)?(?:the\s(?:arm|robot|manipulator|jacobian|matrix)|it|J|which|der\s(?:arm|roboter)|er)\s)?"
+    r"(?:(?:is|becomes|ist|wird)\s)?(?:"
+    rf"singul(?:ar|är)\s(?:at|for|when|where|if|für|bei|wenn|in)\s(?P<where>(?:{_OR}|{_ANGLE_IS}|\$?{_VALUE}\$?){{1,12}}+)"
+    rf"|(?:在|当|机械臂在)?\s?(?P<there>(?:{_OR}|{_ANGLE_IS}|\$?{_VALUE}\$?){{1,12}}+)\s?(?:时|处)?\s?(?:机械臂|机器人)?(?:奇异|为奇异|处于奇异位形))"
+    r"\s?[.。]?\s*$",
+    re.IGNORECASE,
+)
+"""What follows from a determinant: ``so the arm is singular at q2 = 0 and q2 = pi``."""
+
+
+def _without_singular(text: str, place: str, holds: Holds) -> str:
+    """The text without where the arm is singular, if it is so.
+
+    Raises:
+        ExpressionError: it is not singular there.
+    """
+    found = _SINGULAR.search(text)
+    if found is None:
+        return text
+    name, known = "", True
+    for one in re.finditer(rf"{_ANGLE_IS}|{_VALUE}", (found["where"] or found["there"])):
+        left, sign, value = one[0].rpartition("=")
+        digit = re.search(r"[\d₀-₉]", left.translate(BELOW)) if sign else None
+        name = f"q{digit[0]}" if digit else name
+        told = holds(Claim("singular", (name,), words=frozenset({value.strip(" $")})))
+        if told is False:
+            said = N_("{words!r} beside the formula is not so of this robot; leave it out")
+            raise refused(place, said, words=found[0].strip(" ,.;")[:80])
+        known = known and bool(told)
+    return text[: found.start()] if known else text
 
 
 @dataclass(frozen=True)
@@ -250,7 +292,9 @@ def _claim(concept: _Concept, tokens: list[_Token], subject: str) -> Claim | Non
     while k < len(tokens):
         one, word = tokens[k], tokens[k].text.lower()
         behind = tokens[k + 1] if k + 1 < len(tokens) else None
-        if one.kind == "mark":
+        if one.kind == "mark" and one.text == ":" and k == 1 and names:
+            pass  # a legend: l1: length of link 1
+        elif one.kind == "mark":
             if one.text not in _COMMAS or not (0 < k < len(tokens) - 1):
                 return None
             goes_on = concept.commas and tokens[k + 1].text.lower() in concept.words

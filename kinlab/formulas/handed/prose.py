@@ -7,7 +7,7 @@ is right all the same; one that does not is not judged.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -15,6 +15,10 @@ from kinlab.formulas.handed.vocabulary import BEHIND, CHINESE, LATIN, chinese_le
 
 _FONT = re.compile(r"\\(?:text|textrm|textit|textbf|mbox|textnormal|mathrm|rm|hbox)\s*\{([^{}]*)\}")
 _BELOW = re.compile(rf"_\s*(?:\{{[^{{}}]*(?:\{{[^{{}}]*\}})?[^{{}}]*\}}|[{LATIN}]+|\w)")
+_NAMES_BELOW = re.compile(
+    r"(?<![A-Za-z])(?:[vw][xyz]|com|cog|cm|cg|tcp|ee|lin|rot|ang|pos)(?![a-z])"
+)
+"""What stands below a name and says of what it is, as its places do."""
 _AROUND = re.compile(r"\\(?:begin|end|label|tag|ref|color|textcolor|operatorname)\*?\s*\{[^{}]*\}")
 _COMMAND = re.compile(r"\\(?:[A-Za-z]+\*?|.)")
 MATHS = re.compile(r"\$\$[^$]*\$\$|\$[^$]*\$|\\\(.*?\\\)|\\\[.*?\\\]", re.DOTALL)
@@ -71,6 +75,10 @@ _CONDITION = re.compile(
     r"|[lmI]c?[1-9]\s*=\s*0(?![\w.])"
     r"|(?P<letter>[lLmI])[1-9]\s*=\s*(?P=letter)[1-9](?![\w*/+-]|\s*[*/^+-]))"
 )
+_WORKED_OUT = re.compile(
+    r"[\d./]*\s*(?:\\?(?:arc|a?tan|a?cos|a?sin|sqrt|operatorname|[dt]?frac|left)|[*(^])"
+)
+"""What goes on behind a number as a formula: ``theta = 2 arctan ...``."""
 _ALONE = re.compile(r"[\d.]*°?(?:\s*/\s*\d+)?\s*(?:$|[,;，；\n)])")
 """What ends a number."""
 _INERTIA = re.compile(
@@ -93,10 +101,12 @@ _UP_TO = re.compile(
     re.IGNORECASE,
 )
 _ELSEWHERE = re.compile(
-    r"\b(?:I[a-z]{0,2}_?\d|inertias?)\b[^.;=]{0,40}?\b(?:about|around|at) (?:the |its |their )?"
+    r"\b(?:I[a-z]{0,2}_?\d|I(?=\s(?:is|being|denotes|means|stands)\b)|inertias?)\b[^.;=]{0,40}?"
+    r"\b(?:about|around|at) (?:the |its |their )?"
     r"(?:(?:first|second|third|fourth|axis of|axes of|own) (?:the )?)*"
     r"(?:joints?|pivots?|hinges?|ends?|axes|axis of rotation)\b"
-    r"|\b(?:I_?\d|trägheitsmomente?s?)\b[^.;=]{0,40}?\b(?:um|bezüglich|bezogen auf)"
+    r"|\b(?:I_?\d|I(?=\s(?:das|ist|bezeichnet)\b)|trägheitsmomente?s?)\b[^.;=]{0,40}?"
+    r"\b(?:um|bezüglich|bezogen auf)"
     r" (?:das |des |den |die |der |dem )?(?:gelenke?s?|drehpunkte?s?|drehachse|lagers?|endes?)\b"
     r"|(?:I_?\d|转动惯量)[^。；=]{0,20}?(?:绕|对|关于)(?:关节|铰链?|转轴|端点|端部)"
     r"|(?:绕|对|关于)(?:关节|铰链?|转轴|端点|端部)的?转动惯量",
@@ -205,8 +215,10 @@ def moment_elsewhere(text: str) -> str:
     """What says of a name in the formula that it is a moment of inertia about another point."""
     plain = flat(text)
     found = _ELSEWHERE.search(plain)
-    name = re.match(r"I[a-z]{0,2}_?\d", found[0]) if found else None
-    if found is None or name is None or _NOT.search(found[0]) or plain.count(name[0]) < 2:
+    name = re.match(r"I[a-z]{0,2}_?\d|I\b", found[0]) if found else None
+    if found is None or name is None or _NOT.search(found[0]):
+        return ""
+    if len(re.findall(rf"(?<![A-Za-z]){re.escape(name[0])}(?![A-Za-z])", plain)) < 2:
         return ""
     return found[0][:_MOST]
 
@@ -229,7 +241,7 @@ def _used(word: str, text: str) -> bool:
 def condition_in_front(text: str, entry: str) -> bool:
     """Whether an equation in front of the formula says when it holds: ``for q2 = 0``."""
     plain = flat(text)
-    found = _CONDITION.search(plain)
+    found = next(_conditions_in(plain), None)
     if found is None:
         return False
     front = plain[: found.start()]
@@ -239,7 +251,8 @@ def condition_in_front(text: str, entry: str) -> bool:
 
 def is_condition(equation: str) -> bool:
     """Whether an equation says when a formula holds, and no name's meaning: ``q2 = 0``."""
-    return bool(_CONDITION.match(flat(equation).strip()))
+    found = next(_conditions_in(flat(equation).strip()), None)
+    return found is not None and found.start() == 0
 
 
 def _conditions(text: str) -> list[tuple[str, str]]:
@@ -248,8 +261,16 @@ def _conditions(text: str) -> list[tuple[str, str]]:
     Without words, only what nothing but a number is said of: no ``theta1 = 2*atan(...)``.
     """
     plain, words = flat(text), _words_in(text)
-    found = _CONDITION.finditer(plain)
+    found = _conditions_in(plain)
     return [(one[0], one[0]) for one in found if words or _ALONE.match(plain, one.end())]
+
+
+def _conditions_in(plain: str) -> Iterator[re.Match[str]]:
+    """Equations of an angle with a number, but for those that go on as a formula."""
+    for found in _CONDITION.finditer(plain):
+        number = found.end() - 1 if plain[found.end() - 1].isdigit() else found.end()
+        if found["letter"] or not _WORKED_OUT.match(plain, number):
+            yield found
 
 
 def flat(text: str) -> str:
@@ -296,6 +317,7 @@ def _proses(text: str) -> tuple[tuple[str, bool], ...]:
     if "\\" in text:  # without braces one letter stands below: _eT
         found = [one for one in found if one[:1] == "{"]
     below = " ".join(_FONT.sub(r" \1 ", one) for one in found)
+    below = _NAMES_BELOW.sub(" ", below)
     said = [(re.sub(r"[{}\\]", " ", below), False)]
     text = _BELOW.sub("_0", text)
     said += [(one[1], False) for one in _FONT.finditer(text)]

@@ -28,6 +28,7 @@ _MEANS = re.compile(
     r"(?<==)([^=]+?)[,，;；]\s*(?=\$?[lLmI]_?\{?c?\d\}?\$?\s*(?:为|是|表示|(?:is|are|denotes?|being|ist)\s))"
 )
 """What explains a name behind a formula without saying where: ``x = ..., l1 is the length``."""
+_OF_A_WRENCH = ("tau", "statics", "inverse_dynamics_loaded", "Q", "u")
 _GAP = re.compile(r"\s{12,}")
 _NUMBERS = re.compile(
     r"^\s*((?:\$?\\?[A-Za-z]\w*\{?\w*\}?\s*=\s*\d[\d.]*[^=:：,，;；\n]{0,12}"
@@ -40,11 +41,28 @@ _REMARK = re.compile(r"^(\s*\([A-Za-z]{3,}[ ,.][^()=+*/^]*\))\s+(?=\\?[A-Za-z])"
 _BRACED_COMMA = re.compile(r"(?<=\d)\{,\}(?=\d)")
 _COMMA = re.compile(r"(=\s*\d+),(\d+)(?=\s*(?:kg|m|N)\b)")
 _GIVEN = re.compile(r"\b(?:da|weil|because|since|using)(?=\s+\$?\w{1,3}(?:_\{?\w\}?)?\$?\s*=\s*\d)")
+_TWICE = re.compile(
+    r"(?<![\w\\=<>!:])(?P<name>\\?[A-Za-z][\w{}\\]{0,30}?)(?P<sign>\s{0,9}=(?!=)\s{0,9})(?P=name)(?P<again>\s{0,9}=(?!=))"
+)
+"""A name that is given twice over: ``h = h = m2*l1*l2*s2``."""
+_PART = r"\s*(?:F_?\{?x\}?|f_?\{?x\}?)\s*[,;]\s*(?:[Ff]_?\{?y\}?)\s*(?:[,;]\s*[Ff]_?\{?z\}?\s*)?"
+_WRENCH = re.compile(
+    rf"[,;]?\s*\b[FfWwh]\s*=\s*[\[(]{_PART}"
+    r"(?:[,;]\s*[NnMm]_?\{?x\}?\s*[,;]\s*[NnMm]_?\{?y\}?\s*)?"
+    r"(?:[,;]\s*[NnMm]_?\{?z\}?\s*)?[\])](?:\s*\^?\s*(?:T\b|\\top)|')?"
+)
+"""The tool's force and moment by their parts, in their order: ``F = [Fx, Fy, Nz]``."""
+_CONSTANT = re.compile(
+    r"[,;，；]\s*(?:(?:which|it|das)\s+)?(?:(?:is|ist)\s+)?(?:an?\s+|为|是)?"
+    r"(?:constants?|konstante?|常数|常量)\s*[.。]?\s*$",
+    re.IGNORECASE,
+)
+_MOVING = re.compile(r"theta|θ|q|(?<![A-Za-z])th|cos|sin|(?<![A-Za-z\\])[cs]_?\{?\d|\\d?dot")
 _ON_A_LINE = re.compile(r"\n\s*(?=(?:with|mit)\s)")
 
 
 def as_formula(
-    text: str, entry: str, place: str, holds: Holds | None = None
+    text: str, entry: str, place: str, holds: Holds | None = None, several: bool = False
 ) -> tuple[str, str, list[tuple[str, str]]]:
     """The formula in what was handed in, as :mod:`kinlab.formulas.typed` reads it.
 
@@ -53,6 +71,7 @@ def as_formula(
         entry: what the formula is asked for.
         place: what to put in front of a message.
         holds: what is known of the arm, of clauses that say something of it.
+        several: whether it is asked for several entries, as rows are.
 
     Returns:
         The formula, nothing changed in it where nothing is around it; what is to be said of how it
@@ -66,12 +85,17 @@ def as_formula(
     if holds is not None:
         text = without_clauses(text, place, holds)
     text = _GIVEN.sub("where", _COMMA.sub(r"\1.\2", _BRACED_COMMA.sub(".", text)))
+    text = _TWICE.sub(lambda found: f"{found['name']}{found['again']}", text)
     text = _ON_A_LINE.sub(" ", _REMARK.sub(r"\1: ", text))
     text = _NUMBERS.sub(lambda found: f"{_BETWEEN.sub('; ', found[1]).rstrip('; ')}; ", text)
     text = _MEANS.sub(r"\1, where ", _SCORE.sub(" ", text), count=1)
+    text = _WRENCH.sub("", text) if entry.startswith(_OF_A_WRENCH) else text
+    constant = _CONSTANT.search(text)
+    if constant and not _MOVING.search(text[: constant.start()].partition("=")[2]):
+        text = text[: constant.start()]
     doubts = doubtful(text, entry)
     text, marks = without_marks(siciliano_s_letters(text))
-    text = without_code(text, bool(_ALONE.fullmatch(entry)))
+    text = without_code(text, not several and bool(_ALONE.fullmatch(entry)))
     text = undressed(text, entry)
     text = without_words(text, entry, place)
     text = plain_rates(text)

@@ -12,7 +12,7 @@ import re
 from kinlab.formulas.handed.prose import MATHS, is_condition
 from kinlab.formulas.handed.vocabulary import CHINESE, LATIN, is_listed, is_program
 from kinlab.formulas.signs.brackets import parts_at
-from kinlab.formulas.typed import begins_with, explains_another, says_what_it_is
+from kinlab.formulas.typed import begins_with, explains_another, is_name_of, says_what_it_is
 
 _PROGRAM = re.compile(r"\b(?:def|lambda|return|import)\b|```|^\s*`")
 _FONT = re.compile(r"\\(?:text|textrm|textit|textbf|mbox|textnormal|hbox)\s*\{([^{}]*)\}")
@@ -20,7 +20,7 @@ _WORD = re.compile(
     rf"(?<![\w\\{{.])[{LATIN}]{{2,}}(?:['’-][{LATIN}]{{2,}}|['’]s)*(?![\w(\[{{}}])|[{CHINESE}]+"
 )
 _DOTTED = re.compile(
-    r"\b(?:i\.\s?e|e\.\s?g|d\.\s?h|z\.\s?b|q\.\s?e\.\s?d|bzw|w\.\s?r\.\s?t|resp|ans|eqn?|no|nr|sol|fig|vgl|abb|gl|cf|sec|ch|tab)\.(?=\s|,|$|:)",
+    r"\b(?:i\.\s?e|e\.\s?g|d\.\s?h|z\.\s?b|q\.\s?e\.\s?d|bzw|w\.\s?r\.\s?t|resp|ans|eqn?|no|nr|sol|fig|vgl|abb|gl|cf|sec|ch|tab|kap|abschn|aufg|bsp|thm|prop|lect|chap|pp)\.(?=\s|,|$|:)",
     re.IGNORECASE,
 )
 _MEANS = r"\s+(?:denotes|means|stands for|is short for|steht für|表示)\s+"
@@ -36,7 +36,7 @@ _COMMENT = re.compile(r"(?<!\\)(?<![\d ] )(?:^|(?<=[\s;]))%[^\n=]*$", re.MULTILI
 """A comment of LaTeX's or MATLAB's, without an equation in it."""
 _ABOUT = re.compile(
     rf"(?<![\w*/^+=-])[xyz]-(?=(?:coordinate|component|position|koordinate|komponente)[{LATIN}]*)"
-    r"|\(\s*units?\s*:\s*[A-Za-z/^0-9 ]{1,12}\)"
+    r"|\(\s*(?:units?|einheit(?:en)?|单位)\s*[:：]?\s*(?:kg|rad|Nm|N|m|J|s|SI)(?![A-Za-z])[\s/^0-9*·kgNmJsrad]{0,8}\)"
     rf"|(?<=[\w)}}\]])\s\((?:[{LATIN}]{{2,20}}[ ,]{{1,2}}){{2,8}}[{LATIN}]{{2,20}}\)",
     re.IGNORECASE,
 )
@@ -218,8 +218,12 @@ def _of_entry(pieces: list[str], entry: str) -> list[str]:
     pieces = [piece.removeprefix("=").strip() for piece in pieces]
     equations = [one for piece in pieces for one in _equations(piece) if _is_equation(one)]
     mine = [one for one in equations if begins_with(_ALIGNED.sub("", one).strip(), entry)]
+    formulas = [one for one in pieces if "=" not in one and _OPERATOR.search(one)]
+    if not mine and not formulas:  # by another of its names
+        named = [one for one in equations if is_name_of(one.partition("=")[0], entry)]
+        named = [one for one in named if not explains_another(one, equations)]
+        mine = named if len(named) == 1 else []
     if not mine:  # a formula without its name, or by another
-        formulas = [one for one in pieces if "=" not in one and _OPERATOR.search(one)]
         given = {_plain(one.partition("=")[0]) for one in equations}
         formulas = [one for one in formulas if len(one) > _SHORT]
         formulas = formulas or [one for one in pieces[:1] if _plain(one) in given]

@@ -38,6 +38,8 @@ _OTHERWISE = re.compile(
     r"|\bup\s+to\s+(?:the\s+|a\s+|its\s+)?(?:\w+\s+)?(?:sign|factor|scale|order)\w*"
     r"|\bbis\s+auf\s+(?:das\s+|den\s+|einen\s+|ein\s+)?(?:\w+\s+)?(?:vorzeichen|faktor)\w*"
     r"|(?:相差|差|除了|除)一?个?(?:正负|负)?(?:符号|号|系数|因子)|符号相反|单位质量|单位长度"
+    r"|\b(?:units?|einheit(?:en)?)\s*[:=]?\s*(?:(?:in|is|are|of|ist|sind)\s+)?"
+    r"(?:mm|cm|dm|km|kN|N?cm|N?mm|deg|grad|inch\w*|milli\w+|centi\w+|zenti\w+)\b"
     r"|(?:单位[:：为是]*|以)(?:度|毫米|厘米)|单位\s*[:：为是]?[^，。,;；\n]{0,12}(?:[cm]m|毫米|厘米)"
     r"|\b(?:opposite|other|reversed?|changed)\s+sign\b|\bnegative\s+of\b|\bumgekehrte\w*\s+vorzeichen"
     r"|\b(?:must|has\s+to|have\s+to|needs?\s+to|should|ought\s+to)\s+be\s+(?:dropped|removed|added"
@@ -49,7 +51,8 @@ _OTHERWISE = re.compile(
     r"|\b(?:neglect|ignor|disregard|vernachlässig)\w*\s+(?:\w+\s+){0,3}"
     r"(?:mass\w*|gravity|weight|inertia|masse|gewicht\w*|schwerkraft|trägheit)"
     r"|(?:忽略|不计|不考虑|略去)[^，。,;；=]{0,8}(?:质量|重力|惯量|惯性|自重)"
-    r"|\b(?:correct|right|true)\s+(?:result|answer|value|formula|entry|form|one)\s+(?:is|would|reads)\b"
+    r"|\b(?:correct|right|true)\s+(?:result|answer|value|formula|entry|form|one|signs?)\s+"
+    r"(?:is|are|would|reads)\b|\b(?:richtige|korrekte)s?\s+vorzeichen\s+(?:ist|wäre)\b|正确的?(?:符号|结果|答案)(?:是|为|应)"
     r"|\b(?:rpm|rev/min|u/min|(?:revolutions?|rotations?|turns?)\s+per|umdrehung\w*)\b|转每分|每分钟|转/分"
     r"|\b(?:approximat\w*|näherung\w*|genähert\w*|missing|forgot(?:ten)?|fehl(?:t|en))\b|近似|缺少|漏掉"
     r"|(?<!counter)(?<!counter[ -])(?<!anti)(?<!anti[ -])\bclockwise\b"
@@ -74,7 +77,8 @@ _DENIED = re.compile(
 )
 """The same, in front of a formula alone."""
 _MORE = re.compile(
-    r"\b(?:plus|minus|times|(?<!checked )(?<!verified )twice|multiplied|divided|except"
+    r"\b(?:plus|times|(?<!checked )(?<!verified )twice|multiplied|divided|except"
+    r"|minus(?!\s+signs?\s+(?:is|are|comes?|follows?|arises?|results?|stems?|must|has)\b)"
     r"|apart|without|zuzüglich|abzüglich|ohne|außer"
     r"|mal|geteilt)\b|加上|减去|乘以|除以|再加|再乘",
     re.IGNORECASE,

@@ -1,0 +1,144 @@
+r"""What books call entries of quantities that have a long name: x_2, y_{c2}, \dot M_{12}, J_v.
+
+A row of the table has places of a quantity, counted from 1, and the names that may stand in front
+of a formula for them. A name of other places is none of them.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+
+_CENTRE = "(?:c|C|g|G|s|S|m|com|COM|cm|CM|cg|CG|sp|SP)"
+"""What stands below a centre of mass: of the centre, of gravity, of the Schwerpunkt."""
+_LINEAR = "(?:v|V|p|P|l|L|lin|pos|xyz)"
+_ANGULAR = "(?:w|W|omega|o|O|r|R|rot|ang)"
+_POINT = "(?:[pPrdt](?:0?(?:e|E|ee|EE|tcp|TCP|tool|n))?|pos|position|[xX]e)"
+_TABLE = (
+    (r"dh_poses (?P<k>\d),(?P<x>[123]),4", "[pPord]?<x>0?<k>|[pPord]0?<k><x>"),
+    (r"dh_poses (?P<k>\d),:[23],4", "[pPOordt]0?<k>"),
+    (r"dh_poses (?P<k>\d),:[23],:[23]", "R0?<k>"),
+    (r"dh_poses (?P<k>\d)", "[TH]0?<k>"),
+    (r"link_transforms (?P<k>\d)", "[TAH]<before><k>|A<k>"),
+    (
+        r"com_positions (?P<k>\d),(?P<x>[123])",
+        f"[prscPR]?<x>{_CENTRE}?<k>|[prscPR]{_CENTRE}?<k><x>",
+    ),
+    (r"com_positions (?P<k>\d)(?:,:[23])?", f"[prscPR]{_CENTRE}?<k>"),
+    (r"christoffel (?P<i>\d),(?P<j>\d),(?P<k>\d)", "(?:[DdcC]|Gamma)<i><j><k>"),
+    (r"mass_matrix_dot (?P<i>\d),(?P<j>\d)", "[MDHBmdb]dot<i><j>"),
+    (r"mass_matrix_dot", "[MDHB]dot"),
+    (r"jacobian_dot (?P<i>\d),(?P<j>\d)", "Jdot<i><j>"),
+    (r"jacobian_dot", "Jdot"),
+    (r"fk :[23],4", _POINT),
+    (r"fk :[23],:[23]", "R(?:0?(?:e|E|ee|EE|tcp|TCP|tool|n))?"),
+    (r"(?:planar_)?jacobian(?:_tool)? (?P<x>[123])", f"J{_LINEAR}?<x>"),
+    (r"jacobian(?:_tool)? 4", f"J{_ANGULAR}x"),
+    (r"jacobian(?:_tool)? 5", f"J{_ANGULAR}y"),
+    (r"planar_jacobian 3", f"J(?:{_ANGULAR}z?|phi)"),
+    (r"jacobian(?:_tool)? 6", f"J(?:{_ANGULAR}z?|phi)"),
+    (r"(?:planar_)?jacobian(?:_tool)? :[23]", f"J(?:{_LINEAR}|xy)?"),
+    (r"jacobian(?:_tool)? 4:6?", f"J{_ANGULAR}"),
+    (r"(?:planar_)?jacobian(?:_tool)? :,(?P<k>\d)", "J<k>"),
+    (r"(?:planar_)?jacobian(?:_tool)? :[23],(?P<k>\d)", f"J{_LINEAR}?<k>"),
+    (r"jacobian(?:_tool)? 4:6?,(?P<k>\d)", f"J{_ANGULAR}<k>"),
+    (r"fivebar_jacobian (?P<k>\d)", "J<k>"),
+    (r"fivebar_leg_angles", "theta|q|alpha|phi"),
+    (r"fk (?P<x>[123]),4", "p?<x>"),
+)
+"""Quantities with their places, and what books call these."""
+_ROWS = tuple((re.compile(asked), names) for asked, names in _TABLE)
+_ANY = {"x": "[xyz]", **dict.fromkeys(("i", "j", "k", "before"), r"\d")}
+_FIELD = re.compile(r"<(\w+)>")
+
+
+def is_named(name: str, asked: str) -> bool:
+    """Whether a plain name is one that books have for places of a quantity.
+
+    Args:
+        name: as :func:`plain_name` or the reader of names has it: ``yc2``, ``Mdot12``.
+        asked: the quantity and its places from 1: ``"com_positions 2,2"``, ``"fk :3,4"``.
+    """
+    pattern = _of(asked)
+    return pattern is not None and bool(pattern.fullmatch(name.replace("_", "")))
+
+
+def is_named_elsewhere(name: str, asked: str) -> bool:
+    """Whether a plain name is one that books have for other places of the same quantity."""
+    plain, (quantity, *places) = name.replace("_", ""), asked.split(" ")
+    if not places or is_named(name, asked):
+        return False
+    return any(pattern.fullmatch(plain) for pattern in _family(quantity))
+
+
+@lru_cache(maxsize=64)
+def _family(quantity: str) -> tuple[re.Pattern[str], ...]:
+    """What books call any places of a quantity."""
+    own = (names for asked, names in _TABLE if re.match(f"{asked.partition(' ')[0]}$", quantity))
+    return tuple(re.compile(_FIELD.sub(lambda field: _ANY[field[1]], names)) for names in own)
+
+
+@lru_cache(maxsize=256)
+def _of(asked: str) -> re.Pattern[str] | None:
+    for pattern, names in _ROWS:
+        found = pattern.fullmatch(asked)
+        if found is None:
+            continue
+        told = {key: str(value) for key, value in found.groupdict().items()}
+        if "x" in told:
+            told["x"] = "xyz"[int(told["x"]) - 1]
+        if "k" in told:
+            told["before"] = str(int(told["k"]) - 1)
+        for field, value in told.items():
+            names = names.replace(f"<{field}>", value)
+        return re.compile(names)
+    return None
+
+
+_FONT = re.compile(
+    r"\\(?:mathbf|mathrm|mathcal|mathit|boldsymbol|bm|vec|text|textrm|operatorname)(?![A-Za-z])"
+)
+_OF_STATE = re.compile(r"\s*\([^()]*[A-Za-zθ][^()]*\)\s*$")
+_DOT = re.compile(r"\\dot(?![A-Za-z])\s*|\\dot(?=\s*\{)")
+_BY_TIME = re.compile(
+    r"\\[dt]?frac\s*\{\s*(?:\\mathrm\{d\}|d)\s*(?P<a>[^{}]*(?:\{[^{}]*\})?)\s*\}\s*"
+    r"\{\s*(?:\\mathrm\{d\}|d)\s*t\s*\}\s*(?P<b>[^/]*)|d\s*(?P<c>[^/=]{1,12})/\s*d\s*t"
+)
+_RATE = re.compile(
+    r"(?:(?P<dotted>[MDHBJ]|[mdb](?=dot\d\d))(?:dot|\u0307)|dot(?P<behind>[MDHBJ]|[mdb](?=\d\d))"
+    r"|d(?P<by>[MDHBJ])(?:dt)?(?=\d|$))(?P<places>\d\d|)"
+)
+_JACOBIAN = re.compile(r"J(?:(?:omega|ω)([xyz]?\d?)|(?:var)?(?:phi|φ|theta|θ))")
+_AXIS_LAST = re.compile(rf"[prsPR]({_CENTRE}?)(\d)([xyz])")
+_END = r"\{?(\d|[eEn]|ee|EE|tcp|TCP)\}?"
+_IN_BASE = re.compile(
+    rf"\\?([RTHpPdo])(?:\^\{{?0\}}?_{_END}|_\{{?0\}}?\^{_END}|_{_END}\^\{{?0\}}?)"
+)
+_CHRISTOFFEL = re.compile(r"(?:Gamma|Γ)(\d)(\d)(\d)")
+_LONGEST = 80
+
+
+def plain_name(text: str) -> str:
+    r"""The plain name of a left side that has more on it than letters and one subscript.
+
+    ``\dot M_{12}`` and ``dM_{12}/dt`` are Mdot12, ``J_\omega`` is Jw, ``p_{c2,y}`` is yc2; empty
+    of any other.
+    """
+    if len(text) > _LONGEST:
+        return ""
+    text = _BY_TIME.sub(lambda m: f"dot {m['a'] or m['b'] or m['c']}", text)
+    dotted = _DOT.sub("dot", _FONT.sub("", _OF_STATE.sub("", text)))
+    plain = re.sub(r"\\[,;! ]|[\s_{}\\,$&]", "", dotted.translate(_SMALL))
+    if found := _RATE.fullmatch(plain):
+        return f"{found['dotted'] or found['behind'] or found['by']}dot{found['places']}"
+    if found := _JACOBIAN.fullmatch(plain):
+        return "Jphi" if found[1] is None else f"Jw{found[1]}"
+    if found := _AXIS_LAST.fullmatch(plain):
+        return f"{found[3]}{found[1]}{found[2]}"
+    if found := _IN_BASE.fullmatch(re.sub(r"\s", "", dotted)):
+        return f"{found[1]}0{found[2] or found[3] or found[4]}"
+    found = _CHRISTOFFEL.fullmatch(plain)
+    return f"Gamma{found[1]}{found[2]}{found[3]}" if found else ""
+
+
+_SMALL = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789") | {ord("Ṁ"): "Mdot", ord("Ḋ"): "Ddot"}
