@@ -20,7 +20,7 @@ from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.glossary.facts import holding
 from kinlab.doctor.linkages import as_right, five_bar
 from kinlab.doctor.linkages.mechanisms import mechanism_beside
-from kinlab.doctor.shapes import in_full, parts_of
+from kinlab.doctor.shapes import in_full, last_joint, parts_of
 from kinlab.doctor.text.claims import alone, claimed_of, named_alone, with_forces, with_wrench
 from kinlab.doctor.text.habits import with_habits
 from kinlab.doctor.text.joints import joint_values
@@ -602,7 +602,17 @@ def read_formulas(document: Mapping[str, Any], path: str) -> FormulaFile:
         robot = None
     if robot is None:
         return formula_file(document, path)
-    return formula_file(document, path, holds=holding(robot), parts_of=parts_of(robot))
+    return of_robot(document, path, robot)
+
+
+def of_robot(document: Mapping[str, Any], path: str, robot: Mechanism) -> FormulaFile:
+    """The formulas of a document that is read already, held against what is known of the robot.
+
+    Raises:
+        FileError, ExpressionError: the document holds no formulas, or what is none.
+    """
+    known = holding(robot), parts_of(robot), last_joint(robot)
+    return formula_file(document, path, None, *known)
 
 
 def robot_of(file: FormulaFile) -> Mechanism:

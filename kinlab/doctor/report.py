@@ -25,24 +25,23 @@ from kinlab.doctor.examine import examine, prepare, real
 from kinlab.doctor.file import (
     as_judged,
     examine_formulas,
+    of_robot,
     read_formulas,
     refuse_unjudged,
     require_sound,
     robot_of,
     twice,
 )
-from kinlab.doctor.glossary.facts import holding
 from kinlab.doctor.linkages.as_right import times
 from kinlab.doctor.linkages.mechanisms import mechanism
 from kinlab.doctor.program.elsewhere import lines_elsewhere
 from kinlab.doctor.program.words import lines
-from kinlab.doctor.shapes import parts_of
 from kinlab.doctor.text.claims import VECTORS, claimed_of
 from kinlab.doctor.text.claims import alone as alone_of
 from kinlab.errors import ExpressionError, KinlabError
 from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree
-from kinlab.formulas.files import FormulaFile, alone, entries_of, formula_file, with_entries
+from kinlab.formulas.files import FormulaFile, alone, entries_of, with_entries
 from kinlab.formulas.marks import differences
 from kinlab.formulas.record import AnswerShapeError, function_name, state_by_state
 from kinlab.formulas.text import SHORTHAND, joint_spelling, parse, respelled
@@ -87,7 +86,7 @@ def diagnose(
         only = not isinstance(arm, FiveBar) and arm.n == 1 and quantity in VECTORS
         entry = alone_of(quantity) if only else quantity
         document = {"robot": arm.name, "formulas": {entry: function}}
-        file = formula_file(document, "formula", holds=holding(arm), parts_of=parts_of(arm))
+        file = of_robot(document, "formula", arm)
         judged = examine_formulas(file, arm, whole(samples, "samples", FEWEST), seed_of(seed))
         refuse_unjudged(judged)
         wrong = [one for one in judged if not one.agrees]

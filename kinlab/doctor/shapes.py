@@ -28,6 +28,11 @@ _HOMOGENEOUS = (0, 1, 3)
 _RATES = ("vx", "vy", "vz", "wx", "wy", "wz")
 
 
+def last_joint(robot: Mechanism) -> int | None:
+    """The number of an arm's last joint, counted from 1; None of a five-bar."""
+    return robot.n if isinstance(robot, Robot) else None
+
+
 def parts_of(robot: Mechanism) -> PartsOf:
     """The entries of rows, columns and blocks of a quantity: of ``fk[:3,3]``, ``jacobian[0]``.
 

@@ -35,6 +35,7 @@ from kinlab.formulas.handed.prose import Doubt, left_over
 from kinlab.formulas.handed.reading import as_formula
 from kinlab.formulas.signs.latex import LAMBDA
 from kinlab.formulas.signs.letters import WIDE
+from kinlab.formulas.signs.named import is_of_other_frames
 from kinlab.formulas.signs.refusals import refused
 from kinlab.formulas.text import LENGTH, parse, tidied
 from kinlab.formulas.tree import Node
@@ -88,6 +89,7 @@ def formula_file(
     writing: typed.Hand | None = None,
     holds: Holds | None = None,
     parts_of: PartsOf | None = None,
+    last: int | None = None,
 ) -> FormulaFile:
     """Reads the formulas of a TOML document.
 
@@ -102,6 +104,7 @@ def formula_file(
         writing: what more of the same writer's formulas say; None looks at these.
         holds: what is known of the robot, of clauses beside a formula that say something of it.
         parts_of: the entries of a name that is of several: of rows, columns and blocks.
+        last: the number of the robot's last joint, whose frame a pose may be of.
 
     Raises:
         FileError: the document holds no formulas, or what is none.
@@ -154,6 +157,10 @@ def formula_file(
             doubts |= dict.fromkeys(parts, doubts[key])
     for key, value in entries.items():
         own, entries[key] = typed.explained(_text(value, f"{place}: {key}"), key)
+        left = entries[key].partition("=")[0]
+        if last is not None and is_of_other_frames(left, key, last):
+            said = N_("the formula begins with {text} =, which is another")
+            raise refused(f"{place}: {key}", said, text=left.strip("$& ")[:40])
         used = _SIGNS.sub("", " ".join([*own.values(), entries[key]]))
         for name, formula in own.items():
             unused = name not in used or name[0] == "L"

@@ -804,14 +804,13 @@ def entry_name(text: str, place: str = "expression", writing: Hand | None = None
     """
     if len(text) > _LONGEST_NAME:
         raise refused(place, N_("{text}... is no name of an entry"), text=text[:30])
-    typed = _IN_BASE.sub(
-        "", _OF_STATE.sub("", _TIMES_RATES.sub("", bare(text).strip("& "))).strip()
-    )
+    whole = _OF_STATE.sub("", _TIMES_RATES.sub("", bare(text).strip("& "))).strip()
+    typed = _IN_BASE.sub("", whole)
     if _LAMBDA.fullmatch(typed):
         return latex.LAMBDA
     if _DETERMINANT.fullmatch(typed):
         return "det J"
-    if name := plain_name(typed) or _range_name(typed):
+    if name := plain_name(whole) or plain_name(typed) or _range_name(typed):
         return name
     if "∂" in typed:
         found = _DERIVATIVE.fullmatch(unicodedata.normalize("NFKC", typed))

@@ -170,3 +170,29 @@ def test_what_may_change_a_formula_is_still_refused(entry, text):
 def test_without_a_robot_a_block_stays_one_entry():
     with pytest.raises(ExpressionError, match="is one entry"):
         formula_file({"robot": "planar2r", "formulas": {"jacobian[0]": f"[{ROW}]"}}, "here")
+
+
+TOOL = "[[c12, -s12, 0, l1*c1 + l2*c12], [s12, c12, 0, l1*s1 + l2*s12], [0, 0, 1, 0], [0, 0, 0, 1]]"
+
+
+@pytest.mark.parametrize(
+    "left",
+    ["{}^0_2T", "{}^0_3T", "T_2^0", "T^0_2", "{}^{0}T_{2}", r"\mathbf{T}_2^0", "T_{02}", "T_n"],
+)
+def test_a_pose_of_the_last_joints_frame_in_the_base_is_the_tools(left):
+    assert kl.diagnose("planar2r", "fk", f"{left} = {TOOL}").agrees
+
+
+@pytest.mark.parametrize(
+    "left", ["{}^0_1T", "{}^1_2T", "T_1^0", "T_{1}^{2}", "{}^{0}T_{1}", r"\mathbf{T}_1^0", "T_{01}"]
+)
+def test_a_pose_of_another_frame_is_another(left):
+    with pytest.raises(ExpressionError, match="which is another"):
+        kl.diagnose("planar2r", "fk", f"{left} = {TOOL}")
+
+
+def test_a_rotation_of_another_frame_is_another():
+    turn = "[[c12, -s12, 0], [s12, c12, 0], [0, 0, 1]]"
+    assert kl.diagnose("planar2r", "fk[:3,:3]", f"R_2^0 = {turn}").agrees
+    with pytest.raises(ExpressionError, match="which is another"):
+        kl.diagnose("planar2r", "fk[:3,:3]", f"R_1^0 = {turn}")

@@ -13,6 +13,8 @@ _CENTRE = "(?:c|C|g|G|s|S|m|com|COM|cm|CM|cg|CG|sp|SP)"
 """What stands below a centre of mass: of the centre, of gravity, of the Schwerpunkt."""
 _LINEAR = "(?:v|V|p|P|l|L|lin|pos|xyz)"
 _ANGULAR = "(?:w|W|omega|o|O|r|R|rot|ang)"
+_LAST = r"(?:e|E|ee|EE|tcp|TCP|tool|n|(?<=0)\d)"
+"""What stands below a pose of the tool; of a number it is asked whether it is the last joint's."""
 _POINT = "(?:[pPrdt](?:0?(?:e|E|ee|EE|tcp|TCP|tool|n))?|pos|position|[xX]e)"
 _TABLE = (
     (r"dh_poses (?P<k>\d),(?P<x>[123]),4", "[pPord]?<x>0?<k>|[pPord]0?<k><x>"),
@@ -30,8 +32,9 @@ _TABLE = (
     (r"mass_matrix_dot", "[MDHB]dot"),
     (r"jacobian_dot (?P<i>\d),(?P<j>\d)", "Jdot<i><j>"),
     (r"jacobian_dot", "Jdot"),
-    (r"fk :[23],4", _POINT),
-    (r"fk :[23],:[23]", "R(?:0?(?:e|E|ee|EE|tcp|TCP|tool|n))?"),
+    (r"fk", rf"[TAH](?:0?{_LAST})?"),
+    (r"fk :[23],4", rf"{_POINT}|[pPdo]0\d"),
+    (r"fk :[23],:[23]", rf"R(?:0?{_LAST})?"),
     (r"(?:planar_)?jacobian(?:_tool)? (?P<x>[123])", f"J{_LINEAR}?<x>"),
     (r"jacobian(?:_tool)? 4", f"J{_ANGULAR}x"),
     (r"jacobian(?:_tool)? 5", f"J{_ANGULAR}y"),
@@ -112,8 +115,9 @@ _JACOBIAN = re.compile(r"J(?:(?:omega|ω)([xyz]?\d?)|(?:var)?(?:phi|φ|theta|θ)
 _AXIS_LAST = re.compile(rf"[prsPR]({_CENTRE}?)(\d)([xyz])")
 _END = r"\{?(\d|[eEn]|ee|EE|tcp|TCP)\}?"
 _IN_BASE = re.compile(
-    rf"\\?([RTHpPdo])(?:\^\{{?0\}}?_{_END}|_\{{?0\}}?\^{_END}|_{_END}\^\{{?0\}}?)"
+    rf"\\?\{{?([RTAHpPdo])\}}?(?:\^\{{?0\}}?_{_END}|_\{{?0\}}?\^{_END}|_{_END}\^\{{?0\}}?)"
 )
+_FROM_BASE = re.compile(rf"(?:\{{\}})?\^\{{?0\}}?\\?\{{?([RTAHpPdo])\}}?_{_END}")
 _CHRISTOFFEL = re.compile(r"(?:Gamma|Γ)(\d)(\d)(\d)")
 _LONGEST = 80
 
@@ -137,8 +141,43 @@ def plain_name(text: str) -> str:
         return f"{found[3]}{found[1]}{found[2]}"
     if found := _IN_BASE.fullmatch(re.sub(r"\s", "", dotted)):
         return f"{found[1]}0{found[2] or found[3] or found[4]}"
+    if found := _FROM_BASE.fullmatch(re.sub(r"\s", "", dotted)):
+        return f"{found[1]}0{found[2]}"
     found = _CHRISTOFFEL.fullmatch(plain)
     return f"Gamma{found[1]}{found[2]}{found[3]}" if found else ""
 
 
 _SMALL = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789") | {ord("Ṁ"): "Mdot", ord("Ḋ"): "Ddot"}
+
+
+_FRAME = r"\{?\s{0,2}(\w)\s{0,2}\}?"
+_POSE = r"\\?\{?\s{0,2}[TRAHpPdo]\s{0,2}\}?"
+_FRAMES = (
+    rf"\{{?\s{{0,2}}\}}?\s{{0,2}}(?:\^{_FRAME}_{_FRAME}|_{_FRAME}\^{_FRAME})\s{{0,2}}{_POSE}",
+    rf"\{{?\s{{0,2}}\}}?\s{{0,2}}\^{_FRAME}\s{{0,2}}{_POSE}_{_FRAME}",
+    rf"{_POSE}(?:\^{_FRAME}_{_FRAME}|_{_FRAME}\^{_FRAME})\s{{0,2}}(?:\(|$)",
+    rf"{_POSE}_?\{{?(0)(\d)\}}?\s{{0,2}}(?:\(|$)",
+)
+_WITH_FRAMES = re.compile("|".join(_FRAMES))
+_OF_THE_TOOL = re.compile(r"fk(?:\[.*)?|[TR]\d\d")
+
+
+def is_of_other_frames(left: str, entry: str, last: int) -> bool:
+    r"""Whether a left side has the frames of another pose than the tool's in the base.
+
+    ``{}^0_2T`` and ``T_2^0`` are right of an arm of two joints, and ``{}^0_3T`` where the tool has
+    a frame of its own; ``{}^1_2T`` is another pose.
+
+    Args:
+        left: as typed.
+        entry: what the formula is asked for; nothing but the tool's pose is looked at.
+        last: the number of the last joint.
+    """
+    plain = _FONT.sub("", left.strip("& $"))[:_LONGEST]
+    found = _WITH_FRAMES.match(plain)
+    if found is None or not _OF_THE_TOOL.fullmatch(entry):
+        return False
+    frames = {x for x in found.groups() if x is not None}
+    if not all(one.isdigit() for one in frames):
+        return False
+    return frames not in ({"0", str(last)}, {"0", str(last + 1)})
