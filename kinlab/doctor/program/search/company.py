@@ -25,6 +25,8 @@ class _Repair(Protocol):
 
 AnyRepair = TypeVar("AnyRepair", bound=_Repair)
 
+_NEAR = 0.02
+"""How much farther an edit may be whose product has more company."""
 _NAMES = ("name", "index")
 """Kinds of edits that put another name, or one of another number."""
 
@@ -56,13 +58,17 @@ def in_company(
         one = edit.part == first.part and _is_plain(edit, trial) and row_of(edit) == row_of(first)
         apart = edit.changes[0].holder is not first.changes[0].holder
         apart = apart or edit.changes[0].field != first.changes[0].field
-        if one and apart and likely(edit) <= likely(first) + same:
+        if one and apart and likely(edit) <= likely(first) + same + _NEAR:
             alike.setdefault(_written(edit, trial), repair)
     some = [*alike.values()]
     if len(some) < 2:
         return [*found]
     others = Counter(_products(trial.trees[first.part]))
-    some.sort(key=lambda repair: -_company(repair.edits[-1], others, trial))
+    company = {id(one): _company(one.edits[-1], others, trial) for one in some}
+    some.sort(key=lambda repair: company[id(repair)], reverse=True)
+    some = [x for x in some if likely(x.edits[-1]) <= likely(some[0].edits[-1]) + same]
+    if len(some) < 2:
+        return [some[0], *(one for one in found if one is not some[0])]
     return [beside(some[0], some[1]), *(one for one in found if one is not some[0])]
 
 
@@ -95,11 +101,19 @@ class _Sorted(ast.NodeTransformer):
         return joined(parts[0], [(node.op, one) for one in parts[1:]])
 
 
-def _company(edit: ProgramEdit, others: Counter[tuple[str, ...]], trial: Trial) -> int:
-    """How often the product that an edit makes stands in the program as it is."""
+def _company(
+    edit: ProgramEdit, others: Counter[tuple[str, ...]], trial: Trial
+) -> tuple[int, int]:
+    """How often the product that an edit makes stands in the program as it is.
+
+    And how often the name that it puts there is multiplied by one of the others of that product.
+    """
     with changed(trial, (edit,)):
-        new = Counter(_products(trial.trees[edit.part]))
-    return max((others[one] for one in new - others), default=0)
+        new = Counter(_products(trial.trees[edit.part])) - others
+    own = ast.unparse(edit.changes[0].new)
+    beside = {x for one in new if own in one for x in one} - {own}
+    pairs = sum(count * len(beside & {*one}) for one, count in others.items() if own in one)
+    return max((others[one] for one in new), default=0), pairs
 
 
 def _products(tree: ast.AST) -> Iterator[tuple[str, ...]]:

@@ -261,7 +261,7 @@ class LineSearch:
                     doubted = doubted or self.evidence.coincident(edit)
             found = found or ([] if self.stand else self.parallel[:1])
             found = self._by_name(self._by_evidence(found))
-            if not self.stand:
+            if not self.stand or below < np.inf:
                 found = in_company(found, self.likely, SAME, self.trial, _beside)
             found = self._beside_data(found)
             if below < np.inf:

@@ -403,6 +403,8 @@ class _Several:
                     better = here.singles(cost + _NEXT)[:_COMPARED]
             except NoProgramError:
                 continue
+            if better and any(x.edits[-1].node is edit.node for x in better[0].rivals):
+                return self.settled(search, better, turns + 1)  # it has more company
             for k, one in enumerate(better):
                 more = search.left_right((*others, one.edits[-1])) - right
                 gap = here.likely(one.edits[-1]) - cost
