@@ -256,6 +256,15 @@ X = "x = l1*c1 + l2*c12"
         "except for a factor of 2",
         "单位 cm",
         "the correct result is different",
+        "after multiplying by -1",
+        "which lacks a factor",
+        "half of what I wrote before",
+        "(gilt nur für l1 = l2)",
+        "valid only for equal links",
+        "仅当关节2锁定",
+        "去掉连杆1后",
+        "with l1 and l2 in cm",
+        "on a moving base",
     ],
 )
 def test_what_denies_a_right_formula_is_refused(words) -> None:
