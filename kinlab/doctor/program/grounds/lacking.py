@@ -35,6 +35,8 @@ _MOST = 6
 """Products that are tried in one place."""
 _IDLE, _FEW = 100, 6
 """As how often what nothing uses counts among the numbers of a part; how many of these."""
+_FRONT = 1.5
+"""As how many more factors a number in front counts."""
 _COST, _LONGER = 1.1, 0.01
 """What one is far-fetched of two factors, and what each further one adds."""
 
@@ -70,14 +72,14 @@ def lacking_terms(
         last = factors([*summands(sum_)][-1])
         made = tables[here.part].making((things - value) * share)
         made.sort(key=lambda one: abs(one[2] - len(last)))  # as long as what stands beside it
-        for op, product, count in made[:_MOST]:
+        for op, product, length in made[:_MOST]:
             term = _as_beside(product, last)
             counted = {*scope.counters} - scope.counting  # by loops that are none around it
             late = any(scope.set_at.get(name, 0) > line for name in names(term))
             if not late and counted.isdisjoint(names(term)) and ast.unparse(term) not in own:
                 new = ast.BinOp(sum_, op, term)
                 new = new if below is None else ast.BinOp(new, ast.Div(), below)
-                yield here.instead(new, "missing term", _COST + _LONGER * (count - 2))
+                yield here.instead(new, "missing term", _COST + _LONGER * (length - 2))
 
 
 def _over(node: ast.expr) -> tuple[ast.expr, ast.expr | None]:
@@ -93,9 +95,8 @@ def _as_beside(product: ast.expr, beside: list[ast.expr]) -> ast.expr:
     """A product with its factors in the order of those that begin so in another term."""
     letters = [ast.unparse(one)[:1].lower() for one in beside]
     own = factors(product)
-    at = [
-        letters.index(x) if x in letters else -1 for x in (ast.unparse(y)[:1].lower() for y in own)
-    ]
+    firsts = [ast.unparse(one)[:1].lower() for one in own]
+    at = [letters.index(x) if x in letters else len(letters) for x in firsts]
     order = sorted(range(len(own)), key=lambda k: at[k])
     return reduce(lambda one, other: ast.BinOp(one, ast.Mult(), other), [own[k] for k in order])
 
@@ -149,6 +150,11 @@ class _Products:
             name: (ast.Name(name, ast.Load()), np.full(states, value))
             for name, value in idle.items()
         }
+        for name, given in _never_read(tree):
+            value = _firsts(observed, given, states)
+            if value is not None and value.all():
+                met[name] = _IDLE
+                self.atoms[name] = ast.Name(name, ast.Load()), value
         for node in nodes(tree):
             if not isinstance(node, ast.expr) or not _may_be_factor(node):
                 continue
@@ -178,11 +184,11 @@ class _Products:
         others = (self.atoms[one.id][1] for one in names_) if isinstance(node, ast.Call) else ()
         return any(np.array_equal(value, other) for other in others)
 
-    def making(self, wanted: Array) -> list[tuple[ast.operator, ast.expr, int]]:
+    def making(self, wanted: Array) -> list[tuple[ast.operator, ast.expr, float]]:
         """The products that are one of the numbers wanted, (G, S), or less; the shortest first."""
         moving = np.ptp(wanted, axis=1) > TOLERANCES.same_relation * np.abs(wanted).max(axis=1)
         wanted = wanted[moving & wanted.all(axis=1)]
-        found: set[tuple[int, int, float, bool]] = set()
+        found: set[tuple[float, int, float, bool]] = set()
         line = self.sizes[self.order, 0]
         near = TOLERANCES.same_relation
         for front in _FRONTS:
@@ -193,7 +199,8 @@ class _Products:
                 for k in map(int, self.order[low[g] : high[g]]):
                     signs = np.sign(wanted[g]) * self.signs[k]
                     if np.abs(self.sizes[k] - sizes[g]).max() <= near and np.ptp(signs) == 0:
-                        found.add((len(self.ways[k]), k, front, bool(signs[0] < 0)))
+                        length = len(self.ways[k]) + _FRONT * (front != 1.0)
+                        found.add((length, k, front, bool(signs[0] < 0)))
         return [
             (ast.Sub() if less else ast.Add(), self._term(k, front), n)
             for n, k, front, less in sorted(found)
@@ -206,6 +213,15 @@ class _Products:
             factors.append(one if power == 1 else ast.BinOp(one, ast.Pow(), number(power)))
         factors = [number(2 if front == 2.0 else front)] * (front != 1.0) + factors
         return reduce(lambda one, other: ast.BinOp(one, ast.Mult(), other), factors)
+
+
+def _never_read(tree: ast.AST) -> Iterator[tuple[str, ast.expr]]:
+    """What a part sets by a name and never reads: what was made of it may have been forgotten."""
+    read = {*names(tree, ast.Load)}
+    for node in nodes(tree):
+        if isinstance(node, ast.Assign):
+            named = (x.id for x in node.targets if isinstance(x, ast.Name) and x.id not in read)
+            yield from ((name, node.value) for name in named)
 
 
 def _may_be_factor(node: ast.expr) -> bool:

@@ -101,9 +101,7 @@ class _Sorted(ast.NodeTransformer):
         return joined(parts[0], [(node.op, one) for one in parts[1:]])
 
 
-def _company(
-    edit: ProgramEdit, others: Counter[tuple[str, ...]], trial: Trial
-) -> tuple[int, int]:
+def _company(edit: ProgramEdit, others: Counter[tuple[str, ...]], trial: Trial) -> tuple[int, int]:
     """How often the product that an edit makes stands in the program as it is.
 
     And how often the name that it puts there is multiplied by one of the others of that product.

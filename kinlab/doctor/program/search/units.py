@@ -59,7 +59,6 @@ class Units:
     def __init__(self, asked: Asked, observed: Observed, evidence: Grounds, work: Work) -> None:
         self.trial, self.work = asked.trial, work
         self.known = Recognised(evidence)
-        self.known.beside(observed.values(len(asked.watched)))
         self.wrong: dict[int, Unit] = {}
         self.before: dict[int, Ranks] = {}
         if not self.known.anything or len(self.trial.trees) == 1:
@@ -68,6 +67,7 @@ class Units:
             ranks = self._ranks(unit)
             if 0 in ranks:
                 self.wrong[k], self.before[k] = unit, ranks
+        self.known.beside(observed.values(len(asked.watched)))
 
     def repairs(self, edits: Sequence[ProgramEdit], most: int) -> list[ProgramEdit]:
         """Those of some edits with which one of the functions answers what a textbook has.
