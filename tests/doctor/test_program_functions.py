@@ -75,10 +75,12 @@ ROWS = """
    0.088    0        90
 """
 
-def rows():
-    for line in ROWS.strip().splitlines():
+def parsed(text):
+    rows = []
+    for line in text.strip().splitlines():
         a, d, alpha = map(float, line.split())
-        yield a, d, math.radians(alpha)
+        rows.append((a, d, math.radians(alpha)))
+    return rows
 
 def modified(a, d, al, th):
     ct, st, ca, sa = math.cos(th), math.sin(th), math.cos(al), math.sin(al)
@@ -91,7 +93,7 @@ def modified(a, d, al, th):
 
 def f(q):
     pose = np.eye(4)
-    for (a, d, al), th in zip(rows(), q):
+    for (a, d, al), th in zip(parsed(ROWS), q):
         pose = pose @ modified(a, d, al, th)
     flange = np.eye(4)
     flange[2, 3] = 0.107
@@ -100,18 +102,26 @@ def f(q):
 RODS = """
 import numpy as np
 
-l1, l2, m1, m2, g = 0.5, 0.4, 2.0, 1.5, 9.81
-lc1, lc2 = l1/2, l2/2
-I1, I2 = m1*l1**2/12, m2*l2**2/12
+l1 = 0.5
+l2 = 0.4
+lc1 = l1/2
+lc2 = l2/2
+m1 = 2.0
+m2 = 1.5
+I1 = m1*l1**2/12
+I2 = m2*l2**2/12
+g = 9.81
 
 def f(q, qd, qdd):
-    c1, c2, c12 = np.cos(q[0]), np.cos(q[1]), np.cos(q[0] + q[1])
-    h = m2*l1*lc2*np.sin(q[1])
-    d11 = m1*lc1**2 + I1 + m2*(l1**2 + lc2**2 + 2*l1*lc2*c2) + I2
-    d12 = m2*(lc2**2 + l1*lc2*c2) + I2
+    th1, th2 = q
+    c1 = np.cos(th1)
+    c12 = np.cos(th1 + th2)
+    h = m2*l1*lc2*np.sin(th2)
+    d11 = m1*lc1**2 + I1 + m2*(l1**2 + lc2**2 + 2*l1*lc2*np.cos(th2)) + I2
+    d12 = m2*(lc2**2 + l1*lc2*np.cos(th2)) + I2
     d22 = m2*lc2**2 + I2
     g2 = m2*g*lc2*c12
-    g1 = (m1*lc1 + m2*l1)*g*c1 + g2
+    g1 = m1*g*lc1*c1 + m2*g*l1*c1 + g2
     tau1 = d11*qdd[0] + d12*qdd[1] - 2*h*qd[0]*qd[1] - h*qd[1]**2 + g1
     tau2 = d12*qdd[0] + d22*qdd[1] + h*qd[0]**2 + g2
     return np.array([tau1, tau2])
@@ -182,11 +192,13 @@ def test_a_function_that_is_right_is_not_spoilt():
     """A slip in a table that is text: no factor in the transform of a row makes up for it."""
     found = kl.diagnose("panda", "fk", written(TYPED.replace("-0.0825", "0.0825")))
     assert not found.agrees
-    assert not any("modified" in place for cause in found.causes for place in cause.places), found
+    assert "modified" not in str(found)
 
 
-def test_of_two_names_for_one_slip_that_with_company_in_the_program_comes_first():
+def test_of_two_names_for_one_slip_that_with_company_in_the_program_comes_first(tmp_path):
     """``l1*lc2`` stands in other lines; ``lc1*l2`` is the same number and stands nowhere."""
     slips = [("h = m2*l1*lc2", "h = m2*lc1*lc2"), ("+ h*qd[0]**2", "- h*qd[0]**2")]
-    found = kl.diagnose("planar2r_rods", "inverse_dynamics", written(with_slips(RODS, slips)))
+    file, text = tmp_path / "rods.py", with_slips(RODS, slips)
+    file.write_text(text)
+    found = kl.diagnose("planar2r_rods", "inverse_dynamics", written(text, file))
     assert "h = m2*l1*lc2*" in found.sentence.partition("or else")[0]
