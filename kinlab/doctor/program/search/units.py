@@ -89,7 +89,6 @@ class Units:
                         found.append(edit)
             except NoProgramError:
                 continue
-        self.work.done += done
         return found
 
     def _of(self, edit: ProgramEdit) -> Iterator[Unit]:
