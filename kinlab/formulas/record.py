@@ -237,11 +237,16 @@ def state_by_state(function: Function) -> Function:
 
 
 def _numbers(answer: Any, function: Function) -> Any:
-    """An answer as an array of its own; numbers of sympy or fractions become floats."""
+    """An answer as an array of its own; numbers of sympy or fractions become floats.
+
+    What is masked is no number.
+    """
     if answer is None:
         raise FormulaError(
             f"function {function_name(function)!r} gives nothing back (None): is a return missing?"
         )
+    if isinstance(answer, np.ma.MaskedArray) and np.ma.is_masked(answer):
+        return np.asarray(answer.astype(float).filled(np.nan))
     found = np.array(answer)
     if found.dtype == object and all(hasattr(x, "__float__") for x in found.flat):
         try:

@@ -40,3 +40,17 @@ def test_a_right_function_is_right_however_it_holds_its_answer(asked, function):
 def test_a_function_without_return_is_told_so(asked):
     with pytest.raises(FormulaError, match="'without_return' gives nothing back.*return"):
         asked("planar2r", "gravity_torques", without_return)
+
+
+@pytest.mark.parametrize("asked", [kl.compare, kl.diagnose])
+def test_a_masked_entry_is_no_number(asked):
+    """What stands below the mask may be right by accident."""
+
+    def masked(q):
+        return np.ma.array(torques(q), mask=[False, True])
+
+    def unmasked(q):
+        return np.ma.array(torques(q), mask=False)
+
+    assert asked("planar2r", "gravity_torques", unmasked).agrees
+    assert not asked("planar2r", "gravity_torques", masked).agrees
