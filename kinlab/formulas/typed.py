@@ -482,7 +482,7 @@ _GOES_ON = re.compile(
     r"(?<=[-+*/^=(,])\s*\n|\n(?=\s*(?:[-+*/^=),]|(?:\\text\s*\{\s*)?(?:where|with)\b))"
 )
 _DEFINED = re.compile(r":\s*=|\\coloneqq(?![A-Za-z])")
-_SIGNED = re.compile(r"[&\s]*[-+*/]")
+_SIGNED = re.compile(r"(?:[&\s]|\\q?quad(?![A-Za-z])|\\[,;:! ])*+[-+*/]")
 _OWN_NAME = re.compile(r"[\\\w{} ]+")
 _NAME = re.compile(r"[A-Za-z]\w*(?:\[[\d,]+\])?")
 

@@ -265,6 +265,7 @@ X = "x = l1*c1 + l2*c12"
         "去掉连杆1后",
         "with l1 and l2 in cm",
         "on a moving base",
+        "where m_2 denotes the mass of the payload",
     ],
 )
 def test_what_denies_a_right_formula_is_refused(words) -> None:
@@ -379,3 +380,15 @@ def test_words_that_are_not_so_or_deny_are_refused(robot, entry, text) -> None:
 )
 def test_what_is_left_in_doubt_is_said(robot, entry, text) -> None:
     assert any("were not read" in one for one in kl.diagnose(robot, entry, text).remarks)
+
+
+def test_a_sum_goes_on_in_the_next_line_of_aligned_equations() -> None:
+    """Not the last line alone is the formula."""
+    text = (
+        r"\begin{aligned} T &= \frac{1}{2}(m_1+m_2) l_1^2 \dot\theta_1^2 + \frac{1}{2} m_2 l_2^2"
+        r" (\dot\theta_1+\dot\theta_2)^2 \\ &\quad + m_2 l_1 l_2 \cos\theta_2\, \dot\theta_1"
+        r"(\dot\theta_1+\dot\theta_2) \end{aligned}"
+    )
+    assert kl.diagnose("planar2r", "kinetic_energy", text).agrees
+    wrong = kl.diagnose("planar2r", "kinetic_energy", text.replace(r"\cos", r"\sin"))
+    assert "sin/cos" in wrong.sentence

@@ -53,6 +53,8 @@ _OTHERWISE = re.compile(
     r"|\b(?:only|nur|lediglich)\s+(?:holds?|valid|true|für|for|if|when|falls|wenn|gültig)\b"
     r"|(?<=\w )in\s+(?:mm|cm|milli?met\w+|centimet\w+|zentimet\w+)\b|仅当|仅在"
     r"|\bminus\s+the\s+(?:potential|kinetic|total)\b|\bequal\s+(?:links?|lengths?|masses)\b"
+    r"|(?<![\w*/^+-])m_?\{?\d\}?\s+(?:is|denotes|means|ist)\s+(?:the\s+|die\s+)?mass\w*\s+(?:of|der)\s+"
+    r"(?:the\s+|a\s+)?(?:payload|load|tool|nutzlast|last)\b"
     r"|\b(?:moving|accelerat\w+)\s+base\b|\bbase\s+(?:is\s+)?(?:mov|accelerat)\w+"
     r"|\bfactor\s+(?:of\s+)?(?:two|2|1/2|0\.5|½|one\s+half|-1|minus\s+one)\b"
     r"|\b(?:neglect|ignor|disregard|vernachlässig)\w*\s+(?:\w+\s+){0,3}"
