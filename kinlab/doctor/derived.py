@@ -152,6 +152,7 @@ def _isotropy_conditions(a: SymbolicArm) -> Any:
 
 _KINEMATIC: dict[str, Callable[[SymbolicArm], Any]] = {
     "fk": kinematics.tool_frame,
+    "dh_poses": lambda a: kinematics.link_frames(a)[1:],
     "jacobian": _jacobian("base"),
     "jacobian_tool": _jacobian("tool"),
     "jacobian_spatial": _jacobian("spatial"),
@@ -184,7 +185,6 @@ _DYNAMIC: dict[str, Callable[[SymbolicArm], Any]] = {
     "christoffel": dynamics.christoffel_cube,
     "tip_speed_squared": tip_speed_squared,
     "isotropy_conditions": _isotropy_conditions,
-    "dh_poses": lambda a: kinematics.link_frames(a)[1:],
 }
 
 _LOADED: dict[str, Callable[[SymbolicArm], Any]] = {

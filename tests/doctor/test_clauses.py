@@ -392,3 +392,26 @@ def test_a_sum_goes_on_in_the_next_line_of_aligned_equations() -> None:
     assert kl.diagnose("planar2r", "kinetic_energy", text).agrees
     wrong = kl.diagnose("planar2r", "kinetic_energy", text.replace(r"\cos", r"\sin"))
     assert "sin/cos" in wrong.sentence
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "text", "said"),
+    [
+        (
+            "stanford",
+            "dh_poses[2,0,3]",
+            "q3*cos(q1)*sin(q2) - d2*cos(q1) + a3*sin(q1)",
+            "cos(q1) should be sin(q1) in d2*cos(q1)",
+        ),
+        (
+            "ur5",
+            "dh_poses[1,0,3]",
+            r"x_2 = -a_2 \cos\theta_1\sin\theta_2",
+            r"\sin\theta_2 should be \cos\theta_2",
+        ),
+    ],
+)
+def test_a_slip_in_the_pose_of_a_frame_of_six_joints_is_told_in_the_text(
+    robot, entry, text, said
+) -> None:
+    assert said in kl.diagnose(robot, entry, text).sentence
