@@ -8,7 +8,7 @@ import functools
 import inspect
 import sys
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from types import CodeType, FrameType, FunctionType
@@ -391,8 +391,17 @@ class Trial:
         Raises:
             FailedError: it ends with an error, or ends itself.
         """
-        self.longest = max(self.longest, self._turns)
-        return self._answer(self._entry, (*self.bound, *state), {})
+        self._turns, self.longest = 0, max(self.longest, self._turns)
+        with _its_own_errors():
+            try:
+                if self._stale:
+                    self.load()
+                for filled in self._filled:
+                    filled.clear()
+                return self._entry()(*self.bound, *state)
+            except SystemExit as end:  # an edit led to where the program ends itself
+                self._stale = self._stale or bool(self._loads)
+                raise FailedError from end
 
     def part(self, k: int, given: Sequence[Any], named: Mapping[str, Any]) -> Any:
         """What one part of the program answers, asked alone.
@@ -400,9 +409,6 @@ class Trial:
         Raises:
             FailedError: it ends with an error, or ends itself.
         """
-        return self._answer(lambda: self._placed[k], given, named)
-
-    def _answer(self, of: Callable[[], Any], given: Sequence[Any], named: Mapping[str, Any]) -> Any:
         self._turns = 0
         with _its_own_errors():
             try:
@@ -410,8 +416,8 @@ class Trial:
                     self.load()
                 for filled in self._filled:
                     filled.clear()
-                return of()(*given, **named)
-            except SystemExit as end:  # an edit led to where the program ends itself
+                return self._placed[k](*given, **named)
+            except SystemExit as end:
                 self._stale = self._stale or bool(self._loads)
                 raise FailedError from end
 
