@@ -391,17 +391,9 @@ class Trial:
         Raises:
             FailedError: it ends with an error, or ends itself.
         """
-        self._turns, self.longest = 0, max(self.longest, self._turns)
-        with _its_own_errors():
-            try:
-                if self._stale:
-                    self.load()
-                for filled in self._filled:
-                    filled.clear()
-                return self._entry()(*self.bound, *state)
-            except SystemExit as end:  # an edit led to where the program ends itself
-                self._stale = self._stale or bool(self._loads)
-                raise FailedError from end
+        self.longest = max(self.longest, self._turns)
+        with self._ready():
+            return self._entry()(*self.bound, *state)
 
     def part(self, k: int, given: Sequence[Any], named: Mapping[str, Any]) -> Any:
         """What one part of the program answers, asked alone.
@@ -409,6 +401,12 @@ class Trial:
         Raises:
             FailedError: it ends with an error, or ends itself.
         """
+        with self._ready():
+            return self._placed[k](*given, **named)
+
+    @contextmanager
+    def _ready(self) -> Iterator[None]:
+        """Sees to what was asked before, and to how the program ends; no frame stands below it."""
         self._turns = 0
         with _its_own_errors():
             try:
@@ -416,8 +414,8 @@ class Trial:
                     self.load()
                 for filled in self._filled:
                     filled.clear()
-                return self._placed[k](*given, **named)
-            except SystemExit as end:
+                yield
+            except SystemExit as end:  # an edit led to where the program ends itself
                 self._stale = self._stale or bool(self._loads)
                 raise FailedError from end
 

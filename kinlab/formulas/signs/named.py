@@ -139,10 +139,9 @@ def plain_name(text: str) -> str:
         return "Jphi" if found[1] is None else f"Jw{found[1]}"
     if found := _AXIS_LAST.fullmatch(plain):
         return f"{found[3]}{found[1]}{found[2]}"
-    if found := _IN_BASE.fullmatch(re.sub(r"\s", "", dotted)):
-        return f"{found[1]}0{found[2] or found[3] or found[4]}"
-    if found := _FROM_BASE.fullmatch(re.sub(r"\s", "", dotted)):
-        return f"{found[1]}0{found[2]}"
+    spaceless = re.sub(r"\s", "", dotted)
+    if found := _IN_BASE.fullmatch(spaceless) or _FROM_BASE.fullmatch(spaceless):
+        return f"{found[1]}0{found[found.lastindex or 1]}"
     found = _CHRISTOFFEL.fullmatch(plain)
     return f"Gamma{found[1]}{found[2]}{found[3]}" if found else ""
 

@@ -74,7 +74,7 @@ _OWN = ("cell", "mass", "centre_distance", "Izz", "joint_Izz", "parameter")
 """The arm's own numbers, which do not vary: any value may meet one."""
 _LAYOUTS = ("entries swapped", "rows", "rows swapped", "transposed", "order", "index")
 """Kinds of edit that make another of the textbooks' functions of one."""
-_OF_NUMBERS = ("factor", "missing factor", "extra factor", "power", "missing term", "extra term")
+_OF_A_FORMULA = ("factor", "missing factor", "extra factor", "power", "missing term", "extra term")
 """Kinds of edit that leave nothing of a textbook's function as it is."""
 _WHOLLY = ("sign", "factor")
 """Kinds of edit that leave a value right at no pass, where they change it as a whole."""
@@ -159,7 +159,7 @@ class Grounds:
 
     def spoils_a_helper(self, edit: ProgramEdit) -> bool:
         """Whether a function would be spoilt that is right whatever it is given."""
-        return edit.kind in _OF_NUMBERS and edit.part in self.helpers
+        return edit.kind in _OF_A_FORMULA and edit.part in self.helpers
 
     def against(self, edit: ProgramEdit) -> float:
         """What an edit costs more than it would where nothing is known to be right."""

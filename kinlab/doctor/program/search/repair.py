@@ -233,7 +233,7 @@ class LineSearch:
             tried = self._in_turn(sorted(every, key=dear.__getitem__))
             if sum(map(self.work.of, tried)) > limit:
                 self.ahead = self._ahead(tried, limit // _UNITS)
-                tried = [*self.ahead, *(x for x in tried if x not in {*self.ahead})]
+                tried = [*dict.fromkeys([*self.ahead, *tried])]
             variants = Variants(self.trial, tried)
             for turn, edit in enumerate(tried):
                 farthest = best + (_DOUBTED if doubted else _TIED)
