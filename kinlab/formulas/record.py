@@ -246,7 +246,7 @@ def _numbers(answer: Any, function: Function) -> Any:
             f"function {function_name(function)!r} gives nothing back (None): is a return missing?"
         )
     if isinstance(answer, np.ma.MaskedArray) and np.ma.is_masked(answer):
-        return np.asarray(answer.astype(float).filled(np.nan))
+        return np.ma.filled(answer.astype(float), np.nan)
     found = np.array(answer)
     if found.dtype == object and all(hasattr(x, "__float__") for x in found.flat):
         try:
