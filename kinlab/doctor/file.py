@@ -202,7 +202,7 @@ def as_judged(file: FormulaFile, robot: Mechanism) -> FormulaFile:
 
 def _with_remarks(found: Diagnosis, remarks: Mapping[str, str]) -> Diagnosis:
     """A diagnosis with what is to be said of how its entries were read."""
-    said = tuple(remarks[one] for one in found.function.split(", ") if one in remarks)
+    said = dict.fromkeys(remarks[one] for one in found.function.split(", ") if one in remarks)
     return replace(found, remarks=(*found.remarks, *said))
 
 
@@ -477,6 +477,7 @@ def _answers(
                 plain=plain,
                 shape=" x ".join(map(str, shape)) or "1",
             )
+    _require_whole(plain, titles, file, engine)
     if plain in _MIRRORED:
         turned = {label_of(plain, k): label_of(plain, k[::-1]) for k in np.ndindex(shape)}
         mirrored = {label: formulas[other] for label, other in turned.items() if other in formulas}
@@ -488,6 +489,35 @@ def _answers(
         for label, x in formulas.items()
     }
     return case, engine, labels, formulas, values
+
+
+_ROTATION = re.compile(r"R(?![A-Za-z])")
+
+
+def _require_whole(plain: str, titles: dict[str, str], file: FormulaFile, engine: Array) -> None:
+    """Refuses a matrix that lacks rows or columns: what is not there cannot be right.
+
+    What is zero everywhere may be left out: z of a planar arm. Of a Jacobian any rows may be given,
+    and of a pose all but the last; R is its first three rows and columns.
+    """
+    given = [
+        split_name(label)[1]
+        for label, entry in titles.items()
+        if entry in file.matrices and split_name(label)[0] == plain
+    ]
+    shape = engine.shape[1:]
+    if len(shape) != 2 or not given or _ROTATION.match(next(iter(titles.values()))):
+        return
+    rows, columns = (len({index[k] for index in given}) for k in range(2))
+    enough = 1 if "jacobian" in plain else 3 if plain == "fk" else shape[0]
+    if np.any(engine[:, rows:enough]) or np.any(engine[:, :, columns:]):
+        raise refused(
+            f"{file.path}: {next(iter(file.matrices.values()))}",
+            N_("a matrix of {given} is given; {plain} is {shape}"),
+            given=f"{rows} x {columns}",
+            plain=plain,
+            shape=" x ".join(map(str, shape)),
+        )
 
 
 def _alone_in(case: Case, label: str) -> Case:

@@ -17,6 +17,7 @@ from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree
 from kinlab.formulas.files import FormulaFile, PartsOf
 from kinlab.formulas.grids import Grid
+from kinlab.formulas.signs.named import LastJoint
 from kinlab.host.language import _
 from kinlab.model.robot import Robot
 from kinlab.symbolic.vocabulary import is_planar
@@ -28,9 +29,17 @@ _HOMOGENEOUS = (0, 1, 3)
 _RATES = ("vx", "vy", "vz", "wx", "wy", "wz")
 
 
-def last_joint(robot: Mechanism) -> int | None:
-    """The number of an arm's last joint, counted from 1; None of a five-bar."""
-    return robot.n if isinstance(robot, Robot) else None
+def last_joint(robot: Mechanism) -> LastJoint | None:
+    """An arm's last joint, by its table; None of a five-bar."""
+    if not isinstance(robot, Robot):
+        return None
+    table = robot.table
+    beyond = (
+        table is not None
+        and table.convention == "modified"
+        and not np.array_equal(table.tool, np.eye(4))
+    )
+    return LastJoint(robot.n, not beyond)
 
 
 def parts_of(robot: Mechanism) -> PartsOf:
@@ -140,4 +149,5 @@ def _renamed(
         formulas={names.get(entry, entry): node for entry, node in file.formulas.items()},
         texts={names.get(entry, entry): text for entry, text in file.texts.items()},
         as_typed={names.get(entry, entry): text for entry, text in file.as_typed.items()},
+        matrices={},
     )

@@ -35,7 +35,7 @@ from kinlab.formulas.handed.prose import Doubt, left_over
 from kinlab.formulas.handed.reading import as_formula
 from kinlab.formulas.signs.latex import LAMBDA
 from kinlab.formulas.signs.letters import WIDE
-from kinlab.formulas.signs.named import is_of_other_frames
+from kinlab.formulas.signs.named import LastJoint, is_craigs_last, is_of_other_frames
 from kinlab.formulas.signs.refusals import refused
 from kinlab.formulas.text import LENGTH, parse, tidied
 from kinlab.formulas.tree import Node
@@ -65,6 +65,7 @@ class FormulaFile:
         remarks: what is to be said of how an entry was read.
         unread: words beside an entry's formula that may change what it claims.
         parts: rows, columns and blocks of a quantity that were given, with their entries.
+        matrices: entries that were given in a matrix, with what that one is called.
     """
 
     path: str
@@ -81,6 +82,7 @@ class FormulaFile:
     unread: Mapping[str, Doubt] = field(default_factory=dict)
     symbols_typed: Mapping[str, str] = field(default_factory=dict)
     parts: Mapping[str, list[str]] = field(default_factory=dict)
+    matrices: Mapping[str, str] = field(default_factory=dict)
 
 
 def formula_file(
@@ -89,7 +91,7 @@ def formula_file(
     writing: typed.Hand | None = None,
     holds: Holds | None = None,
     parts_of: PartsOf | None = None,
-    last: int | None = None,
+    last: LastJoint | None = None,
 ) -> FormulaFile:
     """Reads the formulas of a TOML document.
 
@@ -104,7 +106,7 @@ def formula_file(
         writing: what more of the same writer's formulas say; None looks at these.
         holds: what is known of the robot, of clauses beside a formula that say something of it.
         parts_of: the entries of a name that is of several: of rows, columns and blocks.
-        last: the number of the robot's last joint, whose frame a pose may be of.
+        last: the robot's last joint, whose frame a pose may be of.
 
     Raises:
         FileError: the document holds no formulas, or what is none.
@@ -161,6 +163,12 @@ def formula_file(
         if last is not None and is_of_other_frames(left, key, last):
             said = N_("the formula begins with {text} =, which is another")
             raise refused(f"{place}: {key}", said, text=left.strip("$& ")[:40])
+        if last is not None and is_craigs_last(left, key, last):
+            said = _(
+                "it is the tool's pose; frame {number} of the table lies in its joint, and the "
+                "tool beyond it"
+            ).format(number=last.number)
+            remarks[key] = "; ".join(filter(None, (remarks.get(key), said)))
         used = _SIGNS.sub("", " ".join([*own.values(), entries[key]]))
         for name, formula in own.items():
             unused = name not in used or name[0] == "L"
@@ -183,13 +191,16 @@ def formula_file(
     names = {*file.symbols}.union(
         *map(tree.names, [*file.formulas.values(), *file.symbols.values()])
     )
+    matrices: dict[str, str] = {}
     for key, doubt in list(doubts.items()):  # what is said of a matrix is said of its entries
         if key not in file.formulas and key in chains:
             apart, _writing = _opened({key: chains[key][0]}, symbols, place, writing, whole)
             doubts |= dict.fromkeys(apart, doubt)
+            matrices |= dict.fromkeys(apart, key) if key not in whole and len(apart) > 1 else {}
+            remarks |= dict.fromkeys(apart, remarks[key]) if key in remarks else {}
     left = {key: left_over(*doubts[key], names) for key in doubts.keys() & file.formulas.keys()}
     unread = {key: words for key, words in left.items() if words}
-    return replace(file, others=tuple(others), remarks=remarks, unread=unread)
+    return replace(file, others=tuple(others), remarks=remarks, unread=unread, matrices=matrices)
 
 
 _SIGNS = re.compile(r"[_{}\\\s]")

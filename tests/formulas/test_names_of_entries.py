@@ -196,3 +196,41 @@ def test_a_rotation_of_another_frame_is_another():
     assert kl.diagnose("planar2r", "fk[:3,:3]", f"R_2^0 = {turn}").agrees
     with pytest.raises(ExpressionError, match="which is another"):
         kl.diagnose("planar2r", "fk[:3,:3]", f"R_1^0 = {turn}")
+
+
+@pytest.mark.parametrize(
+    ("left", "said"), [("{}^0_2T", True), ("{}^0_3T", False), ("T_2^0", False)]
+)
+def test_craigs_last_frame_is_said_to_be_another_than_the_tools(left, said):
+    remarks = kl.diagnose("planar2r", "fk", f"{left} = {TOOL}").remarks
+    assert any("frame 2 of the table" in one for one in remarks) is said
+
+
+ROWS = ("m2*l2**2 + m2*l1*l2*c2", "m2*l2**2")
+
+
+@pytest.mark.parametrize(
+    ("entry", "text"),
+    [
+        ("mass_matrix", f"[[(m1 + m2)*l1**2 + m2*l2**2 + 2*m2*l1*l2*c2, {ROWS[0]}]]"),
+        ("mass_matrix", f"[[(m1 + m2)*l1**2 + m2*l2**2 + 2*m2*l1*l2*c2], [{ROWS[0]}]]"),
+        ("jacobian", "[[-l1*s1 - l2*s12], [l1*c1 + l2*c12]]"),
+        ("fk", "[[c12, -s12, 0, l1*c1 + l2*c12], [s12, c12, 0, l1*s1 + l2*s12]]"),
+    ],
+)
+def test_a_matrix_without_a_row_or_column_is_not_the_whole(entry, text):
+    with pytest.raises(ExpressionError, match="a matrix of . x . is given"):
+        kl.diagnose("planar2r", entry, text)
+
+
+@pytest.mark.parametrize(
+    ("entry", "text"),
+    [
+        ("jacobian", "[[-l1*s1 - l2*s12, -l2*s12], [l1*c1 + l2*c12, l2*c12]]"),
+        ("fk", "[[c12, -s12, l1*c1 + l2*c12], [s12, c12, l1*s1 + l2*s12], [0, 0, 1]]"),
+        ("fk", "[[c12, -s12, 0, l1*c1+l2*c12], [s12, c12, 0, l1*s1+l2*s12], [0, 0, 1, 0]]"),
+        ("com_positions", "[[l1*c1, l1*s1], [l1*c1 + l2*c12, l1*s1 + l2*s12]]"),
+    ],
+)
+def test_a_matrix_may_be_without_what_goes_without_saying(entry, text):
+    assert kl.diagnose("planar2r", entry, text).agrees

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from functools import lru_cache
+from typing import NamedTuple
 
 _CENTRE = "(?:c|C|g|G|s|S|m|com|COM|cm|CM|cg|CG|sp|SP)"
 """What stands below a centre of mass: of the centre, of gravity, of the Schwerpunkt."""
@@ -158,10 +159,18 @@ _FRAMES = (
     rf"{_POSE}_?\{{?(0)(\d)\}}?\s{{0,2}}(?:\(|$)",
 )
 _WITH_FRAMES = re.compile("|".join(_FRAMES))
+_CRAIGS = re.compile("|".join(_FRAMES[:2]))
 _OF_THE_TOOL = re.compile(r"fk(?:\[.*)?|[TR]\d\d")
 
 
-def is_of_other_frames(left: str, entry: str, last: int) -> bool:
+class LastJoint(NamedTuple):
+    """The last joint of an arm: its number, and whether its frame in the table is the tool's."""
+
+    number: int
+    is_tool: bool
+
+
+def is_of_other_frames(left: str, entry: str, last: LastJoint) -> bool:
     r"""Whether a left side has the frames of another pose than the tool's in the base.
 
     ``{}^0_2T`` and ``T_2^0`` are right of an arm of two joints, and ``{}^0_3T`` where the tool has
@@ -170,13 +179,30 @@ def is_of_other_frames(left: str, entry: str, last: int) -> bool:
     Args:
         left: as typed.
         entry: what the formula is asked for; nothing but the tool's pose is looked at.
-        last: the number of the last joint.
+        last: of the arm.
     """
-    plain = _FONT.sub("", left.strip("& $"))[:_LONGEST]
-    found = _WITH_FRAMES.match(plain)
+    frames = _frames(_WITH_FRAMES, left, entry)
+    return bool(frames) and frames not in ({"0", str(last.number)}, {"0", str(last.number + 1)})
+
+
+def is_craigs_last(left: str, entry: str, last: LastJoint) -> bool:
+    r"""Whether a left side is the last joint's frame in Craig's writing, and that is not the tool's.
+
+    ``T_3^0`` is said of standard tables as well, whose last frame is at the far end of its link;
+    ``{}^0_3T`` of Craig's, whose last frame lies in its joint.
+
+    Args:
+        left: as typed.
+        entry: what the formula is asked for; nothing but the tool's pose is looked at.
+        last: of the arm.
+    """
+    return not last.is_tool and _frames(_CRAIGS, left, entry) == {"0", str(last.number)}
+
+
+def _frames(written: re.Pattern[str], left: str, entry: str) -> set[str]:
+    """The numbers of the frames that a left side has, where the tool's pose is asked for."""
+    found = written.match(_FONT.sub("", left.strip("& $"))[:_LONGEST])
     if found is None or not _OF_THE_TOOL.fullmatch(entry):
-        return False
+        return set()
     frames = {x for x in found.groups() if x is not None}
-    if not all(one.isdigit() for one in frames):
-        return False
-    return frames not in ({"0", str(last)}, {"0", str(last + 1)})
+    return frames if all(one.isdigit() for one in frames) else set()
