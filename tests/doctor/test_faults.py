@@ -61,3 +61,25 @@ def test_a_list_begun_empty_under_a_numbered_name():
     """``S6 = []`` beside ``S0 = ...``: what one has is looked for in the other."""
     right, slip = "np.cross(o, z)", "np.cross(z, o)"
     told_in_its_line("planar2r", "planar_jacobian", NUMBERED, right, slip)
+
+
+ENDING = """
+import numpy as np
+
+m1, m2, l1, l2, g = 2.0, 1.5, 0.5, 0.4, 9.81
+
+def told(x, most=70.0):
+    if x > most:
+        END
+    return x
+
+def f(q):
+    c1, c12 = np.cos(q[0]), np.cos(q[0] + q[1])
+    return np.array([told((m1 + m2)*l1*g*c1 + m2*l2*g*c12), told(m2*l2*g*c12)])
+"""
+
+
+@pytest.mark.parametrize("end", ["raise KeyboardInterrupt", "raise SystemExit(2)"])
+def test_an_edit_that_leads_to_where_the_program_ends_itself(end):
+    text = ENDING.replace("END", end)
+    told_in_its_line("planar2r", "gravity_torques", text, "told(m2*l2*g*c12)", "told(m2*l1*g*c12)")

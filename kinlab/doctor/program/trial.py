@@ -138,6 +138,7 @@ class Trial:
         ]
         self.space |= {"_turn": self._turn, "_edit": 0, "range": bounded_range, DEFAULT: DEFAULT}
         self.space |= PRODUCTS
+        self.space["KeyboardInterrupt"] = SystemExit  # the program's own is no hand at the keyboard
         self._turns, self.longest, self.most_turns = 0, 0, TURNS
         self._loads = [k for k, part in enumerate(program.parts) if part.sets]
         self._bodies = names_by_class(self.trees[k] for k in self._loads)

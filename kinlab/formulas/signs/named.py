@@ -186,7 +186,7 @@ def is_of_other_frames(left: str, entry: str, last: LastJoint) -> bool:
 
 
 def is_craigs_last(left: str, entry: str, last: LastJoint) -> bool:
-    r"""Whether a left side is the last joint's frame in Craig's writing, and that is not the tool's.
+    r"""Whether a left side is the last frame in Craig's writing, and that is not the tool's.
 
     ``T_3^0`` is said of standard tables as well, whose last frame is at the far end of its link;
     ``{}^0_3T`` of Craig's, whose last frame lies in its joint.
