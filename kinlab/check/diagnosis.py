@@ -231,15 +231,18 @@ class Diagnosis(Answer):
         return ", ".join(map(shown_entry, self.function.split(", ")))
 
     @property
-    def _names(self) -> dict[str, str]:
-        """What was compared, as people say it: entries counted from 1."""
+    def claimed(self) -> str:
+        """What it was held against, as people say it: entries counted from 1."""
         found = _ENTRY.fullmatch(self.quantity)
-        quantity = self.quantity
-        if found is not None:
-            place = ", ".join(str(int(k) + 1) for k in found[2].split(","))
-            place = f"({place})" if "," in place else place
-            quantity = _("entry {place} of {quantity}").format(place=place, quantity=found[1])
-        return {"function": self.title, "quantity": quantity, "robot": self.robot}
+        if found is None:
+            return self.quantity
+        place = ", ".join(str(int(k) + 1) for k in found[2].split(","))
+        place = f"({place})" if "," in place else place
+        return _("entry {place} of {quantity}").format(place=place, quantity=found[1])
+
+    @property
+    def _names(self) -> dict[str, str]:
+        return {"function": self.title, "quantity": self.claimed, "robot": self.robot}
 
     def introduction(self) -> Introduction:
         """The verdict, what is wrong, and what is right."""

@@ -175,7 +175,8 @@ def test_the_report_shows_the_formula_the_diagnosis_and_the_repair(tmp_path):
     for text in ("as written", "should be", 'class="wrong"', 'class="fixed"',
                  "cos(q2) should be cos(q1 + q2)", "once repaired"):  # fmt: skip
         assert text in tau, text
-    assert x.count("<math") == 1 and "Agrees with fk[0,3] of planar2r" in x
+    assert x.count("<math") == 1 and "Agrees with entry (1, 4) of fk of planar2r" in x
+    assert "fk[0,3]" not in page and "inverse_dynamics[1]" not in page
     assert "Differs, cause unknown" in y and "Worst entry y at q = " in y
     assert "should be" in y and 'class="wrong"' not in y  # derived, and nothing is pointed at
     text = (tmp_path / "r.md").read_text(encoding="utf-8")

@@ -121,7 +121,7 @@ def _environment() -> Environment:
 def _told(found: Diagnosis) -> str:
     if found.agrees and not found.remarks:
         told = _("Agrees with {quantity} of {robot}.")
-        return told.format(quantity=found.quantity, robot=found.robot)
+        return told.format(quantity=found.claimed, robot=found.robot)
     # no capital: the sentence may begin with a name
     verdict = sentence(_(found.verdict))[:-1]
     said = _("; ").join(found.remarks) if found.agrees else found.sentence

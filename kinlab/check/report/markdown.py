@@ -101,7 +101,7 @@ def _entry(found: Diagnosis) -> list[str]:
     mark = "" if found.agrees else f" **{_('DIFFERS')}**"
     lines = [f"### {code(found.title)}{mark}", ""]
     of = _("{quantity} of {robot}")
-    lines += [of.format(quantity=code(found.quantity), robot=words(found.robot)), ""]
+    lines += [of.format(quantity=words(found.claimed), robot=words(found.robot)), ""]
     for left, right in found.given:
         lines += [formula(f"{left} = {right}"), ""]
     return lines + _diagnosis(found)

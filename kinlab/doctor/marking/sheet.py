@@ -180,7 +180,8 @@ def sheet_of(document: Mapping[str, Any], place: str, text: str = "") -> Sheet:
         said = _("{count} questions; at most {most}")
         raise _refused(place, said, count=len(rows), most=_QUESTIONS)
     questions = tuple(
-        _question(row, robot, slips, f"{place}: question {k}") for k, row in enumerate(rows, 1)
+        _question(row, robot, slips, f"{place}: " + _("question {number}").format(number=k))
+        for k, row in enumerate(rows, 1)
     )
     taken: set[str] = set()
     for question in questions:
