@@ -34,8 +34,8 @@ from kinlab.doctor.program.grounds.scaled import (
     twisted_by,
 )
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import DATA
-from kinlab.doctor.program.trial import Trial
+from kinlab.doctor.program.places import DATA, ProgramEdit, changed
+from kinlab.doctor.program.trial import FailedError, Trial, quietly
 from kinlab.model.dh import DHLink, DHTable
 from kinlab.model.link import Convention
 from kinlab.model.robot import Robot
@@ -45,6 +45,8 @@ _WAYS = 64
 """Ways of understanding a program's numbers that are tried."""
 _LEAST, _SPREAD, _TURN = 0.75, 1.1, (5**0.5 - 1) / 2
 """How much larger numbers of the arm are: never twice alike, and no simple parts of each other."""
+_RUN = 8
+"""Ways of understanding a program's numbers in which it is run."""
 _AXES = 2
 """Axes of a matrix."""
 _ENDS = ("base", "tool")
@@ -134,6 +136,66 @@ def arm_apart(
     whole = reader.whole and not (named or holds_an_arm(trial)) and len(ways) <= _WAYS
     whole = whole and stays(trial, puts[0])
     return OtherArm(other, changed, whole, frozenset(reader.fitting), reader.odd)
+
+
+def works_out(
+    other: OtherArm,
+    table: DHTable,
+    trial: Trial,
+    observed: Observed,
+    states: Sequence[tuple[Any, ...]],
+) -> OtherArm:
+    """The arm, with those ways in which a program works out its moments of inertia as its own.
+
+    The 0.25 of ``m3*0.25**2/12`` may be a length, or a centre's distance of another link.
+
+    Args:
+        other: another arm.
+        table: of the first arm.
+        trial, observed: the program, and what it was for the first arm.
+        states: some at which it is run.
+    """
+    own = _about_centres(table)
+    every = [node for tree in trial.trees for node in nodes(tree) if isinstance(node, ast.BinOp)]
+    held = [(node, x) for node in every if (x := _constant(observed, node)) is not None]
+    told = [node for node, value in held if value and _close(own, value).any()]
+    if not told or not other.whole:
+        return other
+    theirs = _about_centres(other.table)
+    fit = [way for way in other.ways[:_RUN] if _all_are(theirs, told, trial, way, states)]
+    return replace(other, ways=tuple(fit) or other.ways, whole=bool(fit))
+
+
+def _about_centres(table: DHTable) -> Array:
+    """The moments of inertia of an arm's links about their centres of mass, those that are some."""
+    every = np.ravel([link.inertia for link in table.links]).astype(float)
+    return every[np.abs(every) > TOLERANCES.same_number]
+
+
+def _all_are(
+    theirs: Array,
+    told: Sequence[ast.BinOp],
+    trial: Trial,
+    way: tuple[ProgramEdit, ...],
+    states: Sequence[tuple[Any, ...]],
+) -> bool:
+    """Whether expressions are all of the other arm's numbers, with its numbers in the program."""
+    try:
+        with quietly(), changed(trial, way):
+            there = Observed(trial, states)
+    except FailedError:
+        return False
+    values = (_constant(there, node) for node in told)
+    return all(x is None or bool(_close(theirs, x).any()) for x in values)
+
+
+def _constant(observed: Observed, node: ast.BinOp) -> float | None:
+    """The one number that an expression was; None of one that was several, or none."""
+    seen = observed.of(node)
+    if seen is None or seen.shape != () or not seen.values:
+        return None
+    first = float(seen.values[0])
+    return first if all(float(x) == first for x in seen.values) else None
 
 
 def _opposite(table: DHTable, carried: set[Which]) -> dict[Which, Which]:
@@ -521,7 +583,7 @@ def _apart(
         half = _close(2 * abs(com[0]), abs(length))
         if half and longer == 1.0 and {"com0", "m"} <= told[k]:
             longer = factor("com0", k)  # a rod, of which the program has half the length
-        grown = factor("I", k) if "I" in has else factor("m", k) * longer**2
+        grown = factor("I", k) if "I" in told[k] else factor("m", k) * longer**2
         links.append(
             replace(
                 link,

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from kinlab.doctor.bytecode.syntax import called, nodes
-from kinlab.doctor.program.grounds.apart import arm_apart
+from kinlab.doctor.changes import table_of
+from kinlab.doctor.program.grounds.apart import arm_apart, works_out
 from kinlab.doctor.program.grounds.scaled import (
     OtherArm,
     is_free,
@@ -46,7 +47,10 @@ def _arms(asked: Asked, observed: Observed) -> Pair:
     if any(isinstance(node, ast.Call) and called(node) in ROUNDING for node in every):
         return None, None
     given = case.robot, trial, observed, case.quantity.name not in _KINEMATIC
-    return arm_apart(*given), other_arm(*given)
+    apart, table = arm_apart(*given), table_of(case.robot)
+    if apart is not None and table is not None:
+        apart = works_out(apart, table, trial, observed, asked.states[:1])
+    return apart, other_arm(*given)
 
 
 def other_arms_of(asked: Asked, observed: Observed, work: Work) -> OtherArms:

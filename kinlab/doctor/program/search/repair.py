@@ -136,6 +136,7 @@ class LineSearch:
         self.tried: list[tuple[ProgramEdit, Array]] = []
         self._alone: list[ProgramRepair] | None = None
         self.parallel: list[ProgramRepair] = []
+        self.here: list[ProgramRepair] = []
         self.ahead: list[ProgramEdit] = []
         self.most, self.thorough = _WORK, True
         self.trial, self.case = Trial(program), case
@@ -193,7 +194,7 @@ class LineSearch:
         """
         other = copy.copy(self)
         other.stand, other.tried, other.thorough = stand, [], thorough
-        other._alone, other.ahead = None, []
+        other._alone, other.ahead, other.here = None, [], []
         if not thorough:
             other.most, other.in_lanes, other.heavy = self.most // _SHARE, 0, False
         other.work = copy.copy(self.work)
@@ -517,6 +518,7 @@ class LineSearch:
             return repair
         if not self.stand and len(several) == 1 and self.arms.holds_for_parallel_axes():
             self.parallel.append(repair)
+        self.here += [repair] if len(several) == 1 else []
         return None
 
 

@@ -98,9 +98,18 @@ def several(search: LineSearch) -> list[ProgramRepair]:
         return []
     with quietly():
         looking = _Several(_SHARE * search.most // 10)
-        return looking.of_fewer(
+        found = looking.of_fewer(
             search, [_reduced(repair, search) for repair in looking.found(search)]
         )
+    return found or _right_here(search)
+
+
+def _right_here(search: LineSearch) -> list[ProgramRepair]:
+    """One plain slip with which all is right of this arm, and of no other as far as it is
+    understood which numbers of the program are whose: where nothing else explains the program.
+    """
+    plain = [x for x in search.here if x.edits[0].numbers is None and _is_plain(x)]
+    return sorted(plain, key=lambda one: search.likely(one.edits[0]))
 
 
 def single(search: LineSearch) -> list[ProgramRepair]:
