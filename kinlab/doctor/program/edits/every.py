@@ -34,7 +34,7 @@ from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.calls import of_call
 from kinlab.doctor.program.edits.single.comparisons import negated, of_comparison, of_comparisons
 from kinlab.doctor.program.edits.single.constants import of_constant, of_rods
-from kinlab.doctor.program.edits.single.entries import keys_of, of_keys, of_subscript
+from kinlab.doctor.program.edits.single.entries import is_joined, keys_of, of_keys, of_subscript
 from kinlab.doctor.program.edits.single.names import of_attribute, of_name
 from kinlab.doctor.program.edits.single.operators import is_diagonal, of_operator
 from kinlab.doctor.program.edits.single.rows import of_letters, of_sequence
@@ -248,17 +248,21 @@ def _line(edit: ProgramEdit) -> int:
 # -------- Expressions
 
 
+def _is_an_index(here: Here) -> bool:
+    """Whether it is an index, or one of several; what ``np.r_[a, b]`` joins is none."""
+    if isinstance(here.parent, ast.Slice):
+        return True
+    if isinstance(here.parent, ast.Tuple):
+        of = here.above[-2]
+        return isinstance(of, ast.Subscript) and of.slice is here.parent and not is_joined(of)
+    return isinstance(here.parent, ast.Subscript) and here.field == "slice"
+
+
 def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
     node = here.node
     shape = observed.shape(node)
     seen = observed.of(node)
-    index = isinstance(here.parent, ast.Subscript) and here.field == "slice"
-    index = index or isinstance(here.parent, ast.Slice)
-    index = index or (
-        isinstance(here.parent, ast.Tuple)
-        and isinstance(here.above[-2], ast.Subscript)
-        and here.above[-2].slice is here.parent
-    )
+    index = _is_an_index(here)
     whole = seen is not None and seen.whole and shape == ()
     whole = whole and not (isinstance(node, ast.Name) and node.id in scope.measures)
     if isinstance(node, ast.BinOp):

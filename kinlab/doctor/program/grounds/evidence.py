@@ -196,6 +196,7 @@ class Grounds:
         unlike_ = self._adds_unlike(edit.changes[0].new) or self._takes_another_centre(edit)
         more = _UNLIKE if unlike_ or self._spoils_a_number(edit) else 0.0
         more += _BESIDE_NOTHING if self._is_beside_nothing(edit) else 0.0
+        more += _UNLIKE if _doubles(edit) else 0.0
         more -= _AS_PARTS if self._is_as_another_part(edit) else 0.0
         more += _AGREED if id(edit.node) in self.agreed else 0.0
         more += _USED * self._where_it_is_used(edit) + _RENAMED * self._turns_a_renamed(edit)
@@ -574,6 +575,21 @@ class Grounds:
         """The parts that are named in a tree."""
         inside = named_in(tree)
         return {k for k, part in enumerate(self.trial.program.parts) if part.name in inside}
+
+
+def _doubles(edit: ProgramEdit) -> bool:
+    """Whether an edit makes ``F + F``, or ``F - F``, of a sum: nobody writes that."""
+    (change, *more) = edit.changes
+    row = change.holder
+    if more or not isinstance(row, ast.BinOp) or change.field not in ("left", "right"):
+        return False
+    beside = row.right if change.field == "left" else row.left
+    new = change.new
+    return (
+        isinstance(row.op, ast.Add | ast.Sub)
+        and isinstance(new, ast.Name | ast.Subscript | ast.Attribute)
+        and ast.dump(new) == ast.dump(beside)
+    )
 
 
 def _of_either_sign(senses: list[Sense] | None) -> bool:

@@ -1,4 +1,4 @@
-"""Functions of a program, each asked alone what it was asked first.
+"""Functions of a program, each asked alone some of what it was asked.
 
 A helper that is asked many times, at states beside or for one link after another, is run once to
 see what an edit makes of it: the mass matrix is right or wrong whatever is done with it.
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from types import FunctionType
 from typing import Any
@@ -23,6 +24,8 @@ from kinlab.doctor.program.variants import Variants
 
 _OFTEN = 2
 """Calls of a function from which on it is worth while to ask it alone."""
+_HEARD = 12
+"""Calls of a function of which it is kept what it was asked."""
 _LONGEST = 12
 """Values of one answer that are looked at."""
 
@@ -31,7 +34,7 @@ Ranks = list[int | None]
 
 @dataclass(frozen=True)
 class Unit:
-    """A function of a program, and what it was asked first.
+    """A function of a program, and something that it was asked.
 
     Attributes:
         part: its number.
@@ -59,14 +62,13 @@ class Units:
     def __init__(self, asked: Asked, observed: Observed, evidence: Grounds, work: Work) -> None:
         self.trial, self.work = asked.trial, work
         self.known = Recognised(evidence)
-        self.wrong: dict[int, Unit] = {}
-        self.before: dict[int, Ranks] = {}
+        self.wrong: list[tuple[Unit, Ranks]] = []
         if not self.known.anything or len(self.trial.trees) == 1:
             return
-        for k, unit in _asked_often(self.trial, asked.states[0]).items():
+        for unit in _asked_often(self.trial, asked.states[0]):
             ranks = self._ranks(unit)
             if 0 in ranks:
-                self.wrong[k], self.before[k] = unit, ranks
+                self.wrong.append((unit, ranks))
         self.known.beside(observed.values(len(asked.watched)))
 
     def repairs(self, edits: Sequence[ProgramEdit], most: int) -> list[ProgramEdit]:
@@ -80,24 +82,24 @@ class Units:
         variants, found, done = Variants(self.trial, some), [], 0
         for edit in some:
             units = [*self._of(edit)]
-            done += sum(self.work.of_one_call(edit, unit.calls) for unit in units)
+            done += sum(self.work.of_one_call(edit, unit.calls) for unit, _before in units)
             if done > most:
                 break
             try:
                 with self.trial.changed({edit.part}, edit.changes, variants.of(edit)):
-                    if any(map(self._is_right, units)):
+                    if any(self._is_right(*both) for both in units):
                         found.append(edit)
             except NoProgramError:
                 continue
         return found
 
-    def _of(self, edit: ProgramEdit) -> Iterator[Unit]:
-        """The wrong functions that an edit reaches."""
-        return (unit for k, unit in self.wrong.items() if k in self.trial.above[edit.part])
+    def _of(self, edit: ProgramEdit) -> Iterator[tuple[Unit, Ranks]]:
+        """The wrong functions that an edit reaches, and what their answers were."""
+        return (both for both in self.wrong if both[0].part in self.trial.above[edit.part])
 
-    def _is_right(self, unit: Unit) -> bool:
+    def _is_right(self, unit: Unit, before: Ranks) -> bool:
         """Whether more of what a function answers is a textbook's now, and as much as was."""
-        before, now = self.before[unit.part], self._ranks(unit)
+        now = self._ranks(unit)
         if len(now) != len(before):
             return False
         pairs = [*zip(before, now, strict=True)]
@@ -113,20 +115,21 @@ class Units:
         return [self.known.rank(one) for one in (answer if apart else [answer])[:_LONGEST]]
 
 
-def _asked_often(trial: Trial, state: tuple[Any, ...]) -> dict[int, Unit]:
-    """The functions that are asked often at one state, by their numbers."""
-    first: dict[int, tuple[tuple[Any, ...], dict[str, Any]] | None] = {}
+def _asked_often(trial: Trial, state: tuple[Any, ...]) -> list[Unit]:
+    """The functions that are asked often at one state, with what they are asked in between.
+
+    Newton-Euler for the columns of M is asked for the bias first, where more may be wrong.
+    """
+    heard: dict[int, list[tuple[tuple[Any, ...], dict[str, Any]]]] = {}
     counts: dict[int, int] = {}
     originals = [trial.placed(k) for k in range(len(trial.trees))]
 
     def listening(k: int, function: Callable[..., Any]) -> Callable[..., Any]:
         def listened(*given: Any, **named: Any) -> Any:
             counts[k] = counts.get(k, 0) + 1
-            if k not in first:
-                try:
-                    first[k] = copy.deepcopy((given, named))
-                except Exception:  # noqa: BLE001  what cannot be copied is not asked alone
-                    first[k] = None
+            if counts[k] <= _HEARD:
+                with suppress(Exception):  # what cannot be copied is not asked alone
+                    heard.setdefault(k, []).append(copy.deepcopy((given, named)))
             return function(*given, **named)
 
         return listened
@@ -138,9 +141,12 @@ def _asked_often(trial: Trial, state: tuple[Any, ...]) -> dict[int, Unit]:
         with quietly(), trial.as_loaded():
             trial.function(*(x.copy() for x in state))
     except FailedError:
-        return {}
+        return []
     finally:
         for k, function in enumerate(originals):
             trial.place(k, function)
-    often = {k: both for k, both in first.items() if both is not None and counts[k] >= _OFTEN}
-    return {k: Unit(k, given, named, counts[k]) for k, (given, named) in often.items()}
+    return [
+        Unit(k, *calls[len(calls) // 2], counts[k])
+        for k, calls in heard.items()
+        if counts[k] >= _OFTEN
+    ]

@@ -38,7 +38,7 @@ def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
         if shape is None and observed.shape(node) == ():
             yield from _with_keys(here, node.slice, scope)
         return
-    if _is_stacked(node):
+    if is_joined(node):
         if isinstance(node.slice, ast.Tuple) and len(node.slice.elts) <= _LONGEST:
             yield from swapped_in(here, node.slice, observed)
         return
@@ -109,7 +109,7 @@ def _other_slices(here: Here) -> Iterator[ProgramEdit]:
 def _keys_beside(here: Here) -> dict[str, ast.expr]:
     """The indices that rows have in the same line, and that are counted: ``i``, ``j + 1``."""
     line = nodes(statement_of(here.above))
-    rows = [one for one in line if isinstance(one, ast.Subscript) and not _is_stacked(one)]
+    rows = [one for one in line if isinstance(one, ast.Subscript) and not is_joined(one)]
     keys = [key for one in rows for _holder, _field, key in keys_of(one)]
     return {ast.unparse(one): one for one in keys if isinstance(one, ast.Name) or shifted(one)}
 
@@ -125,7 +125,7 @@ def _places_beside(here: Here, observed: Observed) -> set[int]:
     }
 
 
-def _is_stacked(node: ast.Subscript) -> bool:
+def is_joined(node: ast.Subscript) -> bool:
     """Whether it is ``np.r_[a, b]``, whose entries are no indices."""
     return getattr(node.value, "attr", "") in ("r_", "c_")
 

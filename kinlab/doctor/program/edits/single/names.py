@@ -26,6 +26,8 @@ _ENTRY = 1.16
 """Cost of an entry of what stands in the same line, for a name."""
 _HALF = 1.03
 """Cost of a length for the distance of the centre, where that is half of it, or that for it."""
+_COUNTERS = 1.08
+"""Cost of one loop's counter for another's."""
 _IN_LINE = 1.12
 """Cost of a name for another that stands in the same line."""
 
@@ -38,7 +40,9 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
     if index:
         for other in scope.whole:
             if other != node.id and not is_of_three(here, other):
-                yield here.instead(ast.Name(other, ast.Load()), "index", 1.12)
+                both = other in scope.counters and node.id in scope.counters
+                cost = _COUNTERS if both else _IN_LINE
+                yield here.instead(ast.Name(other, ast.Load()), "index", cost)
         return
     if node.id in scope.arcs and scope.has_numpy:
         yield here.instead(ast.BinOp(PI, ast.Sub(), node), "argument", 1.12)
