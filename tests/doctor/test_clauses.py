@@ -174,7 +174,6 @@ J2 = "J = [-l1*sin(q1) - l2*sin(q1+q2), -l2*sin(q1+q2); l1*cos(q1) + l2*cos(q1+q
 @pytest.mark.parametrize(
     ("robot", "entry", "text", "said"),
     [
-        ("planar2r", "planar_jacobian", f"{J2} expressed in the tool frame", True),
         ("planar2r", "planar_jacobian", f"{J2} expressed in the base frame", False),
         ("planar2r", "planar_jacobian", f"{J2} in the stretched pose", True),
         ("spatial3r", "M33", "M33 = Izz3 + m3*(cx3^2 + cy3^2), where Izz3 is taken about the centre of mass of link 3", False),
@@ -266,6 +265,12 @@ X = "x = l1*c1 + l2*c12"
         "with l1 and l2 in cm",
         "on a moving base",
         "where m_2 denotes the mass of the payload",
+        "公式有误",
+        "gravity not included",
+        "which is the friction torque",
+        "expressed in frame 2",
+        "in the end-effector frame",
+        "senza gravità",
     ],
 )
 def test_what_denies_a_right_formula_is_refused(words) -> None:
@@ -279,11 +284,40 @@ def test_what_denies_a_right_formula_is_refused(words) -> None:
         "where l1 is the length of the first link and l2 that of the second",
         "where l1 and l2 are the lengths of the first and the second link",
         "angles positive counter-clockwise",
+        "friction forces are neglected",
     ],
 )
 def test_what_only_sounds_so_is_not(words) -> None:
     assert kl.diagnose("planar2r", "x", f"{X}, {words}").agrees
     assert kl.diagnose("planar2r", "x", f"Don't forget the second link: {X}").agrees
+
+
+@pytest.mark.parametrize(
+    ("robot", "name", "agrees"),
+    [
+        ("puma560", "Puma 560", True),
+        ("puma560", "Stanford arm", False),
+        ("planar2r", "Two joints of a SCARA", True),
+    ],
+)
+def test_the_name_of_another_arm(robot, name, agrees) -> None:
+    own = "x = l1*c1 + l2*c12"
+    text = f"{name}:\n" + ("M66 = 0.000134 + 0.193" if robot == "puma560" else own)
+    entry = "M66" if robot == "puma560" else "x"
+    if agrees:
+        kl.diagnose(robot, entry, text)
+        return
+    with pytest.raises(ExpressionError, match="not what it is asked for"):
+        kl.diagnose(robot, entry, text)
+
+
+def test_the_tools_own_jacobian_is_in_its_axes() -> None:
+    with pytest.raises(ExpressionError, match="not what it is asked for"):
+        kl.diagnose("planar2r", "planar_jacobian", f"{J2} expressed in the tool frame")
+    rows = "[[l1*s2, 0], [l1*c2 + l2, l2], [0, 0], [0, 0], [0, 0], [1, 1]]"
+    assert kl.diagnose("planar2r", "jacobian_tool", f"In the tool frame: {rows}").agrees
+    with pytest.raises(ExpressionError, match="not what it is asked for"):
+        kl.diagnose("planar2r", "jacobian", f"In the tool frame: {rows}")
 
 
 def test_a_text_that_begins_with_another_joint_is_not_of_this_one() -> None:

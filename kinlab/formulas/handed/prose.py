@@ -123,6 +123,16 @@ _OTHER_FRAME = re.compile(
     re.IGNORECASE,
 )
 """Axes in which an entry's numbers are others, but for those of the tool's own."""
+_IN_THE_BASE = re.compile(r"J|(?:planar_)?jacobian(?!_tool|_dot|_det)|fk|[xyzp](?![A-Za-z])")
+"""Entries whose axes are the base's."""
+_OTHER_AXES = (
+    _OTHER_FRAME,
+    re.compile(
+        r"\b(?:expressed|given|written|resolved)\s+in\s+(?:the\s+)?(?:frame|axes\s+of\s+link)\s*[1-9]\b"
+        r"|\bin\s+frame\s+[1-9]\b|\bim\s+(?:koordinaten)?system\s+[1-9]\b|坐标系\s*[1-9]\s*(?:中|下|内)",
+        re.IGNORECASE,
+    ),
+)
 _SCALED = re.compile(
     r"\bin (?:mm|cm|dm|km|inch(?:es)?|feet|grams?|tonnes?|(?:milli|centi)met(?:re|er)s?"
     r"|(?:milli|zenti)metern?|gramm)\b|\bk?N\s?[·.*]?\s?(?:mm|cm)\b|\bkN\s?m?\b|毫米|厘米|英寸",
@@ -221,6 +231,14 @@ def moment_elsewhere(text: str) -> str:
     if len(re.findall(rf"(?<![A-Za-z]){re.escape(name[0])}(?![A-Za-z])", plain)) < 2:
         return ""
     return found[0][:_MOST]
+
+
+def of_other_axes(text: str, entry: str) -> str:
+    """What says that numbers of the base's axes are in others: ``J in the end-effector frame``."""
+    if not _IN_THE_BASE.match(entry):
+        return ""
+    every = (kind.search(prose) for prose in outside_formulas(text) for kind in _OTHER_AXES)
+    return next((found[0].strip()[:_MOST] for found in every if found), "")
 
 
 def of_another_part(text: str, entry: str) -> str:

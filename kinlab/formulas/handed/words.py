@@ -16,6 +16,7 @@ from kinlab.formulas.handed.prose import (
     flat,
     moment_elsewhere,
     of_another_part,
+    of_other_axes,
     outside_formulas,
 )
 from kinlab.formulas.handed.sentences import without_sentences
@@ -25,8 +26,9 @@ from kinlab.host.language import N_
 
 _HEAD = re.compile(r"^([A-Za-z][\w ]{0,20}?)\s*:(?![=:])\s*(?=\S)")
 _OTHERWISE = re.compile(
-    r"竖直|铅垂|水平(?!面)|夹角|绝对|相对|量起|角度制|错|不对|不正确|不是|并非|不等于"
-    r"|\b(?:measured|absolute[rn]?|relative|verti[ck]al\w*|horizontal\w*(?!\s+plane)|gemessen|misst"
+    r"竖直|铅垂|水平(?!面)|夹角|绝对|相对|量起|角度制|错|有误|应再|不对|不正确|不是|并非|不等于"
+    r"|\b(?:measured|absolute[rn]?|relative|(?<!move )(?<!moves )verti[ck]al\w*"
+    r"|horizontal\w*(?!\s+plane)|gemessen|misst"
     r"|senkrechte?n?"
     r"|waage?recht|grad|degrees?(?!\s+of\s+freedom)|wrong\w*|incorrect\w*|mistak\w*|false"
     r"|falsch\w*|per\s+(?:unit|kg|kilogram|met(?:er|re))|pro\s+(?:kg|einheit|meter|masse\w*))\b"
@@ -59,7 +61,13 @@ _OTHERWISE = re.compile(
     r"|\bfactor\s+(?:of\s+)?(?:two|2|1/2|0\.5|½|one\s+half|-1|minus\s+one)\b"
     r"|\b(?:neglect|ignor|disregard|vernachlässig)\w*\s+(?:\w+\s+){0,3}"
     r"(?:mass\w*|gravity|weight|inertia|masse|gewicht\w*|schwerkraft|trägheit)"
-    r"|(?:忽略|不计|不考虑|略去)[^，。,;；=]{0,8}(?:质量|重力|惯量|惯性|自重)"
+    r"|(?:忽略|不计|不考虑|略去)[^，。,;；=]{0,8}(?:质量|重力|惯量|惯性|自重|动能|势能|科氏|哥氏|离心)"
+    r"|\b(?:without|ohne|senza|sans|sin|sem)\s+(?:the\s+|die\s+|der\s+|les\s+|la\s+)?"
+    r"(?:coriolis|[cz]entrifugal|gravit|schwerkraft|pesanteur)"
+    r"|\bnot\s+(?:yet\s+)?(?:been\s+)?(?:included|considered|contained)\b"
+    r"|\bnicht\s+(?:enthalten|berücksichtigt)\b"
+    r"|(?<!no )(?<!without )\b(?:friction|damping)\s+(?:torque|force|moment)\b(?!\s+is)"
+    r"|\breib(?:ungs)?moment\b"
     r"|\b(?:correct|right|true)\s+(?:result|answer|value|formula|entry|form|one|signs?)\s+"
     r"(?:is|are|would|reads)\b|\b(?:richtige|korrekte)s?\s+vorzeichen\s+(?:ist|wäre)\b|正确的?(?:符号|结果|答案)(?:是|为|应)"
     r"|\b(?:rpm|rev/min|u/min|(?:revolutions?|rotations?|turns?)\s+per|umdrehung\w*)\b|转每分|每分钟|转/分"
@@ -125,7 +133,9 @@ def _refuse_meanings(text: str, entry: str, place: str) -> None:
         if found:
             said = N_("{words!r} beside the formula may change what its names mean; leave it out")
             raise refused(place, said, words=around(prose, *found.span()))
-    other = _of_another_coordinate(text, entry) or moment_elsewhere(text)
+    other = (
+        _of_another_coordinate(text, entry) or moment_elsewhere(text) or of_other_axes(text, entry)
+    )
     if said_otherwise := other or of_another_part(text, entry):
         said = N_("{words!r} beside the formula is not what it is asked for; leave it out")
         raise refused(place, said, words=said_otherwise)
