@@ -146,3 +146,42 @@ def test_nobody_adds_a_force_to_itself():
     right = "cross(arms[i], own) + cross(arms[i], F)"
     found, good = asked(with_slips(TWICE, [(right, slip)]), "planar2r", "gravity_torques")
     assert good and "own + own" not in found.sentence, str(found)
+
+
+LIGHT = """
+import numpy as np
+
+kin = {"first": (0.0, 0.5), "second": (0.0, 0.4)}
+dyn = {"first": (2.0, (0.5, 0.0, 0.0)), "second": (1.5, (0.4, 0.0, 0.0))}
+
+def turn(t):
+    c, s = np.cos(t), np.sin(t)
+    return np.array([[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+
+def moved(x, y, z):
+    T = np.eye(4)
+    T[:3, 3] = x, y, z
+    return T
+
+def f(q):
+    T, V = np.eye(4), 0.0
+    for (name, (off, a)), t in zip(kin.items(), q):
+        T = T @ turn(t + off)
+        m, c = dyn[name]
+        V += 9.81*m*(T @ np.append(c, 1))[1]
+        T = T @ moved(a, 0, 0)
+    return V
+"""
+
+
+@pytest.mark.parametrize(
+    ("right", "slip"),
+    [
+        ("np.append(c, 1)", "np.append(c, 0)"),
+        ("(1.5, (0.4, 0.0, 0.0))", "(1.5, (0.0, 0.4, 0.0))"),
+    ],
+)
+def test_a_point_and_a_centre_inside_of_a_row(right, slip, tmp_path):
+    """``append(r, 0)`` is the vector from the joint, which is right of something else."""
+    file = tmp_path / "own.py"
+    told_in_its_line("planar2r", "potential_energy", LIGHT, right, slip, file)

@@ -168,8 +168,9 @@ def works_out(
 
 def _about_centres(table: DHTable) -> Array:
     """The moments of inertia of an arm's links about their centres of mass, those that are some."""
-    every = np.ravel([link.inertia for link in table.links]).astype(float)
-    return every[np.abs(every) > TOLERANCES.same_number]
+    every: Array = np.ravel([link.inertia for link in table.links]).astype(float)
+    some: Array = every[np.abs(every) > TOLERANCES.same_number]
+    return some
 
 
 def _all_are(

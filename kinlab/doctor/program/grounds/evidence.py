@@ -665,9 +665,11 @@ def _renamed(tree: ast.AST) -> set[str]:
 
 
 def _about_the_other(edit: ProgramEdit) -> bool:
-    """Whether a rod's moment of inertia becomes that about its middle, or about its end."""
+    """Whether one right thing becomes another: a rod's moment about its middle that about its end,
+    and the vector ``append(r, 0)`` a point.
+    """
     both = getattr(edit.node, "value", None), edit.changes[0].new
-    return edit.kind == "number" and both in ((3, 12), (12, 3))
+    return edit.kind == "number" and both in ((3, 12), (12, 3), (0, 1))
 
 
 def _are_flags(seen: Seen | None) -> bool:

@@ -169,8 +169,10 @@ def _exchanged(
     rows = [one for one in value if isinstance(one, list | tuple | np.ndarray)]
     flat = all(_is_plain(x) for one in rows for x in one)
     if len(rows) < len(value) or not flat or len({len(one) for one in rows}) > 1:
-        for k, one in enumerate(rows if len(rows) == len(value) else ()):
-            yield from _exchanged(name, one, (*place, k))
+        held = value if isinstance(value, list) else None  # of (m, (x, y, z)) the inner row
+        for k, one in enumerate(value):
+            if isinstance(one, list | tuple | np.ndarray):
+                yield from _exchanged(name, one, (*place, k), held, k)
         return
     count = range(len(rows[0]))
     if len(count) <= _ROWS:
