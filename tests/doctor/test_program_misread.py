@@ -174,14 +174,16 @@ def f(q):
 """
 
 
-@pytest.mark.parametrize(
-    ("right", "slip"),
-    [
-        ("np.append(c, 1)", "np.append(c, 0)"),
-        ("(1.5, (0.4, 0.0, 0.0))", "(1.5, (0.0, 0.4, 0.0))"),
-    ],
-)
-def test_a_point_and_a_centre_inside_of_a_row(right, slip, tmp_path):
+def test_a_vector_that_should_be_a_point():
     """``append(r, 0)`` is the vector from the joint, which is right of something else."""
-    file = tmp_path / "own.py"
-    told_in_its_line("planar2r", "potential_energy", LIGHT, right, slip, file)
+    right, slip = "np.append(c, 1)", "np.append(c, 0)"
+    told_in_its_line("planar2r", "potential_energy", LIGHT, right, slip)
+
+
+def test_two_entries_inside_of_a_row_are_exchanged(tmp_path):
+    wrong = with_slips(LIGHT, [("(1.5, (0.4, 0.0, 0.0))", "(1.5, (0.0, 0.4, 0.0))")])
+    found, _good = asked(wrong, "planar2r", "potential_energy", tmp_path / "own.py")
+    (cause,) = found.causes
+    assert cause.kinds == ("entries swapped",) and cause.error_after < 1e-9
+    assert "line 5, dyn['second'][1]" in cause.sentence
+    assert "`0, 0.4, 0` should be `0.4, 0, 0`" in cause.sentence
