@@ -500,19 +500,16 @@ def _require_whole(plain: str, titles: dict[str, str], file: FormulaFile, engine
     What is zero everywhere may be left out: z of a planar arm. Of a Jacobian any rows may be given,
     and of a pose all but the last; R is its first three rows and columns.
     """
-    given = [
-        split_name(label)[1]
-        for label, entry in titles.items()
-        if entry in file.matrices and split_name(label)[0] == plain
-    ]
+    own = {label: titles[label] for label in titles if split_name(label)[0] == plain}
+    given = [split_name(label)[1] for label, entry in own.items() if entry in file.matrices]
     shape = engine.shape[1:]
-    if len(shape) != 2 or not given or _ROTATION.match(next(iter(titles.values()))):
+    if len(shape) != 2 or not given or any(map(_ROTATION.match, own.values())):
         return
     rows, columns = (len({index[k] for index in given}) for k in range(2))
     enough = 1 if "jacobian" in plain else 3 if plain == "fk" else shape[0]
     if np.any(engine[:, rows:enough]) or np.any(engine[:, :, columns:]):
         raise refused(
-            f"{file.path}: {next(iter(file.matrices.values()))}",
+            f"{file.path}: {next(file.matrices[x] for x in own.values() if x in file.matrices)}",
             N_("a matrix of {given} is given; {plain} is {shape}"),
             given=f"{rows} x {columns}",
             plain=plain,
@@ -641,7 +638,8 @@ def of_robot(document: Mapping[str, Any], path: str, robot: Mechanism) -> Formul
     Raises:
         FileError, ExpressionError: the document holds no formulas, or what is none.
     """
-    for key, text in (document.get("formulas") or {}).items():
+    table = document.get("formulas")
+    for key, text in table.items() if isinstance(table, Mapping) else ():
         if isinstance(text, str) and (named := _names_another(text, robot)):
             said = N_("{words!r} beside the formula is not what it is asked for; leave it out")
             raise refused(f"{path}: {key}", said, words=named)

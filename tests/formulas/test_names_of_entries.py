@@ -219,7 +219,7 @@ ROWS = ("m2*l2**2 + m2*l1*l2*c2", "m2*l2**2")
     ],
 )
 def test_a_matrix_without_a_row_or_column_is_not_the_whole(entry, text):
-    with pytest.raises(ExpressionError, match="a matrix of . x . is given"):
+    with pytest.raises(ExpressionError, match=f"{entry}: a matrix of . x . is given"):
         kl.diagnose("planar2r", entry, text)
 
 
