@@ -148,5 +148,5 @@ def _asked_often(trial: Trial, state: tuple[Any, ...]) -> list[Unit]:
     return [
         Unit(k, *calls[len(calls) // 2], counts[k])
         for k, calls in heard.items()
-        if counts[k] >= _OFTEN
+        if calls and counts[k] >= _OFTEN
     ]
