@@ -638,23 +638,8 @@ def of_robot(document: Mapping[str, Any], path: str, robot: Mechanism) -> Formul
     Raises:
         FileError, ExpressionError: the document holds no formulas, or what is none.
     """
-    table = document.get("formulas")
-    for key, text in table.items() if isinstance(table, Mapping) else ():
-        if isinstance(text, str) and (named := _names_another(text, robot)):
-            said = N_("{words!r} beside the formula is not what it is asked for; leave it out")
-            raise refused(f"{path}: {key}", said, words=named)
     known = holding(robot), parts_of(robot), last_joint(robot)
     return formula_file(document, path, None, *known)
-
-
-_KNOWN_ARMS = re.compile(r"stanford|puma|scara|panda|ur10|ur5", re.IGNORECASE)
-
-
-def _names_another(text: str, robot: Mechanism) -> str:
-    """What names another arm than the one that is asked for, of those that have a name."""
-    own = {one.lower() for one in _KNOWN_ARMS.findall(robot.name)}
-    told = {one.lower(): one for one in _KNOWN_ARMS.findall(text)}
-    return next(iter(told.values())) if own and told and own.isdisjoint(told) else ""
 
 
 def robot_of(file: FormulaFile) -> Mechanism:

@@ -19,6 +19,7 @@ from kinlab.formulas.files import FormulaFile, PartsOf
 from kinlab.formulas.grids import Grid
 from kinlab.formulas.signs.named import LastJoint
 from kinlab.host.language import _
+from kinlab.model.link import Convention
 from kinlab.model.robot import Robot
 from kinlab.symbolic.vocabulary import is_planar
 
@@ -36,7 +37,7 @@ def last_joint(robot: Mechanism) -> LastJoint | None:
     table = robot.table
     beyond = (
         table is not None
-        and table.convention == "modified"
+        and table.convention is Convention.MODIFIED
         and not np.array_equal(table.tool, np.eye(4))
     )
     return LastJoint(robot.n, not beyond)

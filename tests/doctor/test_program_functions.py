@@ -148,7 +148,7 @@ def test_a_function_that_is_asked_often_is_right_with_an_edit_whatever_else_is_w
     search.singles()
     units = Units(search.asked, search.observed, search.evidence, search.work)
     names = [part.name for part in search.trial.program.parts]
-    assert [names[unit.part] for unit, _ranks in units.wrong] == ["mass"]
+    assert [names[k] for k in units.wrong] == ["mass"]
     with quietly():
         found = units.repairs([edit for edit, _values in search.tried], 10**9)
     assert found and all(names[edit.part] == "mass" for edit in found)

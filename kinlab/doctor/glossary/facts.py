@@ -17,7 +17,7 @@ from kinlab.check.quantities.special import jacobian_determinant
 from kinlab.doctor.changes import Mechanism, table_of
 from kinlab.errors import KinlabError
 from kinlab.fivebar import FiveBar
-from kinlab.formulas.handed.clauses import Claim, Holds
+from kinlab.formulas.handed.clauses import Claim, Holds, arms_named
 from kinlab.model.dh import DHTable
 from kinlab.model.link import FRICTION, Convention
 from kinlab.model.robot import Robot
@@ -73,10 +73,13 @@ def holding(mechanism: Mechanism) -> Holds:
         return _of_five_bar
     table = table_of(mechanism)
     facts = None if table is None else _Facts(table)
+    own = arms_named(mechanism.name)
 
     def holds(claim: Claim) -> bool | None:
         if claim.kind == "right_sign":
             return _is_right_sign(claim)
+        if claim.kind == "arm":
+            return bool(own & claim.words) if own else None
         if claim.kind in _OF_EACH:
             return _is_of_joint_one(claim) if claim.kind == "zero_level" else _is_own(claim)
         known = getattr(facts, claim.kind, None)

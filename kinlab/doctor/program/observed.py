@@ -48,6 +48,13 @@ class Seen:
     entries: Shape | None = None
 
     @property
+    def only(self) -> float | None:
+        """The one number that it was; None where it was several, or none."""
+        if self.shape != () or len({*map(float, self.values)}) != 1:
+            return None
+        return float(self.values[0])
+
+    @property
     def nothing(self) -> bool:
         """Whether it was zero, or zeros, but for rounding, whenever it was seen."""
         floor = TOLERANCES.rounding_leaves

@@ -77,6 +77,7 @@ def without_clauses(text: str, place: str, holds: Holds) -> str:
     Raises:
         ExpressionError: a clause that is not so.
     """
+    _refuse_another_arm(text, place, holds)
     text = _without_singular(text, place, holds)
     told = list(_told(text, place, holds))
     if not told:
@@ -84,6 +85,26 @@ def without_clauses(text: str, place: str, holds: Holds) -> str:
     for start, end in reversed(told):
         text = f"{text[:start]}{_GAP}{text[end:]}"
     return _tidied(text)
+
+
+_ARM = re.compile(r"stanford|puma|scara|panda|ur10|ur5", re.IGNORECASE)
+
+
+def arms_named(text: str) -> frozenset[str]:
+    """The arms of those that have a name that a text names."""
+    return frozenset(map(str.lower, _ARM.findall(text)))
+
+
+def _refuse_another_arm(text: str, place: str, holds: Holds) -> None:
+    """Refuses a formula of which it is said that it is another arm's.
+
+    Raises:
+        ExpressionError: with the arm's name.
+    """
+    found = _ARM.search(text)
+    if found is not None and holds(Claim("arm", words=arms_named(text))) is False:
+        said = N_("{words!r} beside the formula is not what it is asked for; leave it out")
+        raise refused(place, said, words=found[0])
 
 
 _VALUE = (

@@ -157,7 +157,7 @@ def works_out(
     """
     own = _about_centres(table)
     every = [node for tree in trial.trees for node in nodes(tree) if isinstance(node, ast.BinOp)]
-    held = [(node, x) for node in every if (x := _constant(observed, node)) is not None]
+    held = [(node, seen.only) for node in every if (seen := observed.of(node)) is not None]
     told = [node for node, value in held if value and _close(own, value).any()]
     if not told or not other.whole:
         return other
@@ -186,17 +186,8 @@ def _all_are(
             there = Observed(trial, states)
     except FailedError:
         return False
-    values = (_constant(there, node) for node in told)
-    return all(x is None or bool(_close(theirs, x).any()) for x in values)
-
-
-def _constant(observed: Observed, node: ast.BinOp) -> float | None:
-    """The one number that an expression was; None of one that was several, or none."""
-    seen = observed.of(node)
-    if seen is None or seen.shape != () or not seen.values:
-        return None
-    first = float(seen.values[0])
-    return first if all(float(x) == first for x in seen.values) else None
+    seen = (one for node in told if (one := there.of(node)) is not None)
+    return all(x.only is None or bool(_close(theirs, x.only).any()) for x in seen)
 
 
 def _opposite(table: DHTable, carried: set[Which]) -> dict[Which, Which]:

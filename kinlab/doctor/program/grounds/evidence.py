@@ -149,9 +149,8 @@ class Grounds:
             self._look(part, tree, observed)
             for node in nodes(tree):
                 seen = observed.of(node) if isinstance(node, ast.Name | ast.Attribute) else None
-                if seen is not None and seen.shape == () and len({*map(float, seen.values)}) == 1:
-                    own = float(seen.values[0])
-                    self.values |= {own, 1 / own} if own else set()
+                own = None if seen is None else seen.only
+                self.values |= {own, 1 / own} if own else set()
         self.trusted -= self.doubted  # at rest what moves is silent
         self._below()
         self.helpers, self.mirrored = true_helpers(trial, observed)

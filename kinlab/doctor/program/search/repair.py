@@ -222,7 +222,7 @@ class LineSearch:
 
     def _singles(self, below: float) -> list[ProgramRepair]:
         found: list[ProgramRepair] = []
-        self.parallel = []
+        self.parallel, self.here = [], []
         best, doubted = np.inf, False
         limit = _ALONE if self.thorough else self.most
         with quietly():

@@ -62,13 +62,14 @@ class Units:
     def __init__(self, asked: Asked, observed: Observed, evidence: Grounds, work: Work) -> None:
         self.trial, self.work = asked.trial, work
         self.known = Recognised(evidence)
-        self.wrong: list[tuple[Unit, Ranks]] = []
+        self.wrong: dict[int, Unit] = {}
+        self.before: dict[int, Ranks] = {}
         if not self.known.anything or len(self.trial.trees) == 1:
             return
-        for unit in _asked_often(self.trial, asked.states[0]):
+        for k, unit in _asked_often(self.trial, asked.states[0]).items():
             ranks = self._ranks(unit)
             if 0 in ranks:
-                self.wrong.append((unit, ranks))
+                self.wrong[k], self.before[k] = unit, ranks
         self.known.beside(observed.values(len(asked.watched)))
 
     def repairs(self, edits: Sequence[ProgramEdit], most: int) -> list[ProgramEdit]:
@@ -82,24 +83,24 @@ class Units:
         variants, found, done = Variants(self.trial, some), [], 0
         for edit in some:
             units = [*self._of(edit)]
-            done += sum(self.work.of_one_call(edit, unit.calls) for unit, _before in units)
+            done += sum(self.work.of_one_call(edit, unit.calls) for unit in units)
             if done > most:
                 break
             try:
                 with self.trial.changed({edit.part}, edit.changes, variants.of(edit)):
-                    if any(self._is_right(*both) for both in units):
+                    if any(map(self._is_right, units)):
                         found.append(edit)
             except NoProgramError:
                 continue
         return found
 
-    def _of(self, edit: ProgramEdit) -> Iterator[tuple[Unit, Ranks]]:
-        """The wrong functions that an edit reaches, and what their answers were."""
-        return (both for both in self.wrong if both[0].part in self.trial.above[edit.part])
+    def _of(self, edit: ProgramEdit) -> Iterator[Unit]:
+        """The wrong functions that an edit reaches."""
+        return (unit for k, unit in self.wrong.items() if k in self.trial.above[edit.part])
 
-    def _is_right(self, unit: Unit, before: Ranks) -> bool:
+    def _is_right(self, unit: Unit) -> bool:
         """Whether more of what a function answers is a textbook's now, and as much as was."""
-        now = self._ranks(unit)
+        before, now = self.before[unit.part], self._ranks(unit)
         if len(now) != len(before):
             return False
         pairs = [*zip(before, now, strict=True)]
@@ -115,8 +116,9 @@ class Units:
         return [self.known.rank(one) for one in (answer if apart else [answer])[:_LONGEST]]
 
 
-def _asked_often(trial: Trial, state: tuple[Any, ...]) -> list[Unit]:
-    """The functions that are asked often at one state, with what they are asked in between.
+def _asked_often(trial: Trial, state: tuple[Any, ...]) -> dict[int, Unit]:
+    """The functions that are asked often at one state, by their numbers, each with what it is asked
+    in between.
 
     Newton-Euler for the columns of M is asked for the bias first, where more may be wrong.
     """
@@ -141,12 +143,12 @@ def _asked_often(trial: Trial, state: tuple[Any, ...]) -> list[Unit]:
         with quietly(), trial.as_loaded():
             trial.function(*(x.copy() for x in state))
     except FailedError:
-        return []
+        return {}
     finally:
         for k, function in enumerate(originals):
             trial.place(k, function)
-    return [
-        Unit(k, *calls[len(calls) // 2], counts[k])
+    return {
+        k: Unit(k, *calls[len(calls) // 2], counts[k])
         for k, calls in heard.items()
         if calls and counts[k] >= _OFTEN
-    ]
+    }

@@ -168,8 +168,8 @@ class Knowledge:
             seen = self.observed.of(given)
             if isinstance(given, ast.Constant) and type(given.value) is float:
                 self.levels[name.id] = given.value
-            elif seen is not None and seen.shape == () and len({*map(float, seen.values)}) == 1:
-                self.levels[name.id] = float(seen.values[0])
+            elif seen is not None and (only := seen.only) is not None:
+                self.levels[name.id] = only
 
     def _read_expression(self, node: ast.expr, gathered: set[str]) -> None:
         seen = self.observed.of(node)
@@ -181,8 +181,8 @@ class Knowledge:
             self.shapes.setdefault(node.id, seen.shape)
             if len(seen.shape) == 1 and seen.values:
                 self.vectors.setdefault(node.id, seen.values)
-            if seen.shape == () and len({*map(float, seen.values)}) == 1:
-                self.levels[node.id] = float(seen.values[0])
+            if (only := seen.only) is not None:
+                self.levels[node.id] = only
             if seen.whole and seen.shape == () and {*map(float, seen.values)} != {-1.0, 1.0}:
                 return  # it counts, and is no sign
         text = text_of(node)
