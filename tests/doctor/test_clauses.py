@@ -311,6 +311,13 @@ def test_the_name_of_another_arm(robot, name, agrees) -> None:
         kl.diagnose(robot, entry, text)
 
 
+def test_a_matrix_under_the_name_of_its_inverse() -> None:
+    rows = "[(m1+m2)*l1^2 + m2*l2^2 + 2*m2*l1*l2*c2, m2*l2^2 + m2*l1*l2*c2; m2*l2^2 + m2*l1*l2*c2, m2*l2^2]"
+    assert kl.diagnose("planar2r", "mass_matrix", f"% Mass matrix\nM = {rows}").agrees
+    with pytest.raises(ExpressionError, match="Inverse"):
+        kl.diagnose("planar2r", "mass_matrix", f"% Inverse of the mass matrix\nM = {rows}")
+
+
 def test_the_tools_own_jacobian_is_in_its_axes() -> None:
     with pytest.raises(ExpressionError, match="not what it is asked for"):
         kl.diagnose("planar2r", "planar_jacobian", f"{J2} expressed in the tool frame")

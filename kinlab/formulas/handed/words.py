@@ -86,7 +86,7 @@ _FORMULA = re.compile(r"[=*^]")
 """Where a formula begins, or its name ended."""
 _HARMLESS_NOT = "depend|contain|appear|matter|change|enter|vary"
 _DENIED = re.compile(
-    r"\b(?:if|falls|wenn|assum\w+|never|unless|kein\w*"
+    r"\b(?:if|falls|wenn|assum\w+|never|unless|kein\w*|inverse\s+(?:of|der|des)"
     rf"|(?:not|nicht)(?!\s+(?:{_HARMLESS_NOT})))\b|如果|假设|n['’]t\b(?!\s+forget)"
     r"|(?:\\?\b(?:theta|th|q)|[θϑ])_?\{?[\d₀-₉]+\}?\s*"
     r"(?:为|是|表示|is\b|are\b|denotes\b|means\b)",
