@@ -87,7 +87,9 @@ def examine_file(path: str | Path, samples: int = 200, seed: int = 0) -> list[Di
     for _key, problem in lines.problems:
         raise problem
     file = read_formulas(lines.document, str(path))
-    found = examine_formulas(file, robot_of(file), samples, seed)
+    robot = robot_of(file)
+    require_whole(as_judged(file, robot), robot)
+    found = examine_formulas(file, robot, samples, seed)
     refuse_unjudged(found)
     return found
 
@@ -399,6 +401,47 @@ def twice(entry: str, other: str) -> str:
     return _("{one} is given twice, also as {two}; keep one").format(one=one, two=two)
 
 
+_ROTATION = re.compile(r"R(?![A-Za-z])")
+_AXES = 2
+"""Of a matrix."""
+
+
+def require_whole(file: FormulaFile, robot: Mechanism) -> None:
+    """Refuses a matrix that lacks rows or columns: what is not there cannot be right.
+
+    What is zero everywhere may be left out: z of a planar arm. Of a Jacobian any rows may be given,
+    and of a pose all but the last; R is its first three rows and columns.
+
+    Args:
+        file: as it is judged.
+        robot: whose formulas they are.
+
+    Raises:
+        ExpressionError: with the sizes.
+    """
+    file, _shape = in_full(file, robot)
+    titles = _claims(with_names(file, robot), robot)[1] if file.matrices else {}
+    given: dict[str, dict[tuple[Any, ...], str]] = {}
+    for label, entry in titles.items():
+        plain, index = split_name(label)
+        if entry in file.matrices and not _ROTATION.match(entry):
+            given.setdefault(plain, {})[index] = file.matrices[entry]
+    for plain, places in given.items():
+        case, engine = prepare(robot, plain, (), _FEWEST, 0)
+        if case.quantity.read is not None or engine.ndim != 1 + _AXES:
+            continue
+        rows, columns = (len({index[k] for index in places}) for k in range(_AXES))
+        enough = 1 if "jacobian" in plain else 3 if plain == "fk" else len(engine[0])
+        if np.any(engine[:, rows:enough]) or np.any(engine[:, :, columns:]):
+            raise refused(
+                f"{file.path}: {next(iter(places.values()))}",
+                N_("a matrix of {given} is given; {plain} is {shape}"),
+                given=f"{rows} x {columns}",
+                plain=plain,
+                shape=" x ".join(map(str, engine.shape[1:])),
+            )
+
+
 def require_sound(file: FormulaFile, robot: Mechanism) -> dict[str, str]:
     """Refuses what :func:`examine_formulas` would refuse, without judging anything.
 
@@ -414,6 +457,7 @@ def require_sound(file: FormulaFile, robot: Mechanism) -> dict[str, str]:
         wanted, titles = _claims(part, robot)
         for plain, formulas in wanted.items():
             _answers(plain, formulas, titles, robot, part, _FEWEST, 0)
+    require_whole(file, robot)
     return titles
 
 
@@ -477,7 +521,6 @@ def _answers(
                 plain=plain,
                 shape=" x ".join(map(str, shape)) or "1",
             )
-    _require_whole(plain, titles, file, engine)
     if plain in _MIRRORED:
         turned = {label_of(plain, k): label_of(plain, k[::-1]) for k in np.ndindex(shape)}
         mirrored = {label: formulas[other] for label, other in turned.items() if other in formulas}
@@ -489,32 +532,6 @@ def _answers(
         for label, x in formulas.items()
     }
     return case, engine, labels, formulas, values
-
-
-_ROTATION = re.compile(r"R(?![A-Za-z])")
-
-
-def _require_whole(plain: str, titles: dict[str, str], file: FormulaFile, engine: Array) -> None:
-    """Refuses a matrix that lacks rows or columns: what is not there cannot be right.
-
-    What is zero everywhere may be left out: z of a planar arm. Of a Jacobian any rows may be given,
-    and of a pose all but the last; R is its first three rows and columns.
-    """
-    own = {label: titles[label] for label in titles if split_name(label)[0] == plain}
-    given = [split_name(label)[1] for label, entry in own.items() if entry in file.matrices]
-    shape = engine.shape[1:]
-    if len(shape) != 2 or not given or any(map(_ROTATION.match, own.values())):
-        return
-    rows, columns = (len({index[k] for index in given}) for k in range(2))
-    enough = 1 if "jacobian" in plain else 3 if plain == "fk" else shape[0]
-    if np.any(engine[:, rows:enough]) or np.any(engine[:, :, columns:]):
-        raise refused(
-            f"{file.path}: {next(file.matrices[x] for x in own.values() if x in file.matrices)}",
-            N_("a matrix of {given} is given; {plain} is {shape}"),
-            given=f"{rows} x {columns}",
-            plain=plain,
-            shape=" x ".join(map(str, shape)),
-        )
 
 
 def _alone_in(case: Case, label: str) -> Case:

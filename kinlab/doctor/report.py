@@ -29,6 +29,7 @@ from kinlab.doctor.file import (
     read_formulas,
     refuse_unjudged,
     require_sound,
+    require_whole,
     robot_of,
     twice,
 )
@@ -87,6 +88,7 @@ def diagnose(
         entry = alone_of(quantity) if only else quantity
         document = {"robot": arm.name, "formulas": {entry: function}}
         file = of_robot(document, "formula", arm)
+        require_whole(as_judged(file, arm), arm)
         judged = examine_formulas(file, arm, whole(samples, "samples", FEWEST), seed_of(seed))
         refuse_unjudged(judged)
         wrong = [one for one in judged if not one.agrees]
@@ -163,6 +165,7 @@ def of_file(file: FormulaFile, samples: int = 200, seed: int = 0) -> list[Diagno
     """
     robot = robot_of(file)
     file = as_judged(file, robot)
+    require_whole(file, robot)
     judged = examine_formulas(file, robot, max(samples, FEWEST), seed)
     return [_of_text(diagnosis, file, robot) for diagnosis in judged]
 
