@@ -514,9 +514,12 @@ def _answers(
     labels = [label_of(plain, k) for k in np.ndindex(shape)]
     for label in formulas:
         if label not in labels:
+            whole = N_("{plain} is {shape}; write it as a matrix, or ask for one entry of it")
             raise refused(
                 f"{file.path}: {titles[label]}",
-                N_("entry {entry} does not exist; {plain} is {shape}"),
+                N_("entry {entry} does not exist; {plain} is {shape}")
+                if _counted(label)
+                else whole,
                 entry=_counted(label),
                 plain=plain,
                 shape=" x ".join(map(str, shape)) or "1",

@@ -30,6 +30,7 @@ from typing import Any
 from kinlab.errors import ExpressionError, FileError
 from kinlab.formulas import grids, tree, typed
 from kinlab.formulas.handed.clauses import Claim, Holds
+from kinlab.formulas.handed.columns import with_matrices
 from kinlab.formulas.handed.equations import solved
 from kinlab.formulas.handed.prose import Doubt, left_over
 from kinlab.formulas.handed.reading import as_formula
@@ -159,6 +160,7 @@ def formula_file(
             doubts |= dict.fromkeys(parts, doubts[key])
     for key, value in entries.items():
         own, entries[key] = typed.explained(_text(value, f"{place}: {key}"), key)
+        own, entries[key] = with_matrices(own, entries[key], f"{place}: {key}")
         left = entries[key].partition("=")[0]
         if last is not None and is_of_other_frames(left, key, last):
             said = N_("the formula begins with {text} =, which is another")

@@ -122,7 +122,11 @@ def _listed(text: str, over: bool, spaced: bool, writing: Hand) -> Grid:
         return []
     lines = [row for row in parts_at(inside, ";") if row]
     if len(lines) > 1:
-        return [_row(row, spaced, writing) for row in lines]
+        rows = [_row(row, spaced, writing) for row in lines]
+        if len({*map(len, rows)}) > 1:  # one row's entries may be sums
+            apart = [_row(row, True, writing) for row in lines]
+            rows = apart if {*map(len, apart)} == {max(map(len, rows))} else rows
+        return rows
     members = [member for member in _row(inside, spaced, writing) if member]
     if members and all(m.startswith("[") and closes(m) == len(m) - 1 for m in members):
         return [parts_at(m[1:-1], ",") for m in members]

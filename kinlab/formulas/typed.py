@@ -514,7 +514,7 @@ def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
         if not of_one_name(named, entry_name(entry)):
             return {}, text
     dollars = "$" if is_latex(text) else ""
-    formulas = {_own_name(name): f"{dollars}{bare(right)}{dollars}" for name, _sign, right in own}
+    formulas = {own_name(name): f"{dollars}{bare(right)}{dollars}" for name, _sign, right in own}
     return formulas, f"{dollars}{lines[-1]}{dollars}"
 
 
@@ -555,14 +555,14 @@ def _is_own_name(text: str) -> bool:
     return False
 
 
-def _own_name(text: str) -> str:
+def own_name(text: str) -> str:
     """A name that is explained: L3 of ``L3 = 0.3``, for L is the Lagrangian only as an entry.
 
     Of ``v_2^2 = ...`` it is v2^2.
     """
     square = _SQUARE.fullmatch(text.strip("& "))
     if square:
-        return f"{_own_name(square[1])}{_SQUARED}"
+        return f"{own_name(square[1])}{_SQUARED}"
     name, long = entry_name(text), _PRINTED["L"]
     return name.replace(long, "L") if name.startswith(long) and long not in text else name
 

@@ -144,6 +144,7 @@ class Line:
 
     def __post_init__(self) -> None:
         self.count = len(self.target)
+        self._spans: Any = ()
         self.source = self.text.text
         self.root = self._place(ast.parse(self.source, mode="eval").body, None, 0)
         self.scale = float(np.max(np.abs(self.target))) or float(np.max(np.abs(self.root.value)))
@@ -360,6 +361,14 @@ class Line:
             self.changes.append(change(int(k)))
             self.rows.append(effects[k])
 
+    def inside(self, start: int, end: int) -> list[int]:
+        """The changes of what stands between two places of the text, by their numbers."""
+        if len(self._spans) != len(self.changes):
+            told = [(c.start, c.end, bool(c.everywhere)) for c in self.changes]
+            self._spans = np.array(told, dtype=int).reshape(-1, 3)
+        first, last, everywhere = self._spans.T
+        return np.flatnonzero((start <= first) & (last <= end) & (everywhere == 0)).tolist()
+
     def _vanishes(self, place: Place, new: Array) -> Any:
         """Whether nothing is left of a sum with something else in one of its places."""
         above = place.above
@@ -371,12 +380,20 @@ class Line:
     def _is_there(self, effect: Array) -> Any:
         """Whether what is added is a term that is there, or takes one away."""
         allowed = TOLERANCES.effect_matches * self.scale
-        every = effect[..., None, :]
-        gaps = np.minimum(
-            np.max(np.abs(self.shares + every), axis=-1),
-            np.max(np.abs(self.shares - every), axis=-1),
-        )
-        return np.any(gaps <= allowed, axis=-1)
+        every = np.reshape(effect, (-1, self.count))
+        both = np.concatenate([self.shares, -self.shares])
+        # what is alike has one mark; of long formulas there are too many to compare each with each
+        weights = np.random.default_rng(5).uniform(0.5, 1.5, self.count)
+        marks, there = both @ weights, every @ weights
+        order = np.argsort(marks, kind="stable")
+        wide = allowed * float(weights.sum())
+        low = np.searchsorted(marks[order], there - wide)
+        high = np.searchsorted(marks[order], there + wide, "right")
+        found = np.zeros(len(every), dtype=bool)
+        for k in np.flatnonzero(high > low):
+            gaps = np.abs(both[order[low[k] : high[k]]] - every[k])
+            found[k] = np.any(np.max(gaps, axis=-1) <= allowed)
+        return found.reshape(np.shape(effect)[:-1])
 
     @cached_property
     def shares(self) -> Array:

@@ -104,8 +104,7 @@ def _inside(line: Line, place: Place) -> list[int]:
     start, end = place.span if place is not line.root else (0, len(line.source))
     if place.role == 1 and place.above is not None and is_sum(place.above.node):
         start = line.siblings[id(place.above)][0].span[1]
-    within = [start <= c.start and c.end <= end and not c.everywhere for c in line.changes]
-    return [k for k, c in enumerate(line.changes) if within[k] and c.kind not in _TERMS]
+    return [k for k in line.inside(start, end) if line.changes[k].kind not in _TERMS]
 
 
 def _share(line: Line, place: Place) -> Array:

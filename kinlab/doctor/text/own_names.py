@@ -14,6 +14,7 @@ from kinlab.doctor.changes import Mechanism
 from kinlab.doctor.derived import LETTERS, WRENCH
 from kinlab.doctor.linkages import five_bar
 from kinlab.doctor.linkages.named_numbers import named_numbers
+from kinlab.doctor.text.claims import claimed_of
 from kinlab.doctor.text.joints import given_names
 from kinlab.doctor.text.meanings import Meanings, exact_angle, stands_for
 from kinlab.doctor.text.written import Written, literal
@@ -48,7 +49,7 @@ def in_robot_names(text: Node, file: FormulaFile, robot: Mechanism, entry: str) 
         joints = range(1, robot.n + 1)
         known = {*words, *(f"{letter}{i}" for letter in LETTERS.values() for i in joints)}
         known |= {*given_names(entry, robot.table), *WRENCH}
-        if entry.startswith("forward_dynamics"):
+        if claimed_of(entry, robot).startswith("forward_dynamics"):
             known |= {f"tau{i}" for i in joints}
     place = f"{file.path}: {entry}"
     _refuse_large(text, file, place, {}, ())

@@ -53,8 +53,22 @@ _DIGITS = str.maketrans("₁₂₃₄₅₆₇₈₉", "123456789")
 _DOTS = ("", r"\dot", r"\ddot")
 
 
+_OF_PHI = re.compile(
+    r"\\d?dot\s*\{?\s*\\(?:var)?phi(?![A-Za-z])|[φϕ][\u0307\u0308]|(?<![A-Za-z])(?:d{1,2}phi|phid{1,2})_?\d"
+)
+_ANGLE = re.compile(
+    r"\\(?:var)?theta|[θϑ]|(?<![A-Za-z\\])(?:d{0,2}(?:q|th|theta)|(?:q|th|theta)d{1,2})(?:_|\d)"
+)
+_PHI = re.compile(
+    r"\\(?:var)?phi(?![A-Za-z])|[φϕ]|(?<![A-Za-z])phi(?=[_\d])|(?<=(?<![A-Za-z])d)phi(?=[_\d])|(?<=(?<![A-Za-z])dd)phi(?=[_\d])|(?<![A-Za-z])phi(?=d{1,2}_?\d)"
+)
+"""The angles of joints as phi, where they have rates, and no other letter stands for them."""
+
+
 def plain_rates(text: str) -> str:
     """The text with ``qd1`` or ``\\dot{q}_1`` for the rates of joints."""
+    if _OF_PHI.search(text) and not _ANGLE.search(text):
+        text = _PHI.sub(lambda found: "\\theta" if found[0][0] == "\\" else "theta", text)
     typeset = "\\" in text
     if _TIME.search(text):
         for pattern, order in _WAYS:

@@ -14,6 +14,7 @@ from kinlab.formulas.handed.rates import plain_rates
 from kinlab.formulas.handed.units import without_units
 from kinlab.formulas.handed.words import without_words
 from kinlab.formulas.signs.dressed import undressed
+from kinlab.formulas.signs.remarks import without_numbers
 
 _ALONE = re.compile(
     r"(?:p_?)?[xyz]|[VUPTKL]|phi|det\w*|E_?[pk]|\w*energy|lagrangian|[\w,\[\]]*[\d\]]"
@@ -24,6 +25,11 @@ _SCORE = re.compile(
     re.IGNORECASE,
 )
 """What an answer gives: ``(3 points)``."""
+_OF_STATE = re.compile(
+    r"(?<![A-Za-z\\_])((?:\\(?:mathbf|boldsymbol|bm)\s*\{\s*)?[MBDHCVNGgJh](?:\s*\})?)\s?"
+    r"\((?:[\s{},]|\\d{0,2}dot(?![A-Za-z])|\\(?:mathbf|boldsymbol|bm|theta)(?![A-Za-z])|(?:q|th|theta|θ)d{0,2}(?![\w])|d{1,2}q)+\)"
+)
+"""``M(q)``, ``C(q, \\dot q)``: a matrix with all joints' positions, which says nothing more."""
 _MEANS = re.compile(
     r"(?<==)([^=]+?)[,，;；]\s*(?=\$?[lLmI]_?\{?c?\d\}?\$?\s*(?:为|是|表示|(?:is|are|denotes?|being|ist)\s))"
 )
@@ -81,7 +87,10 @@ def as_formula(
     Raises:
         ExpressionError: what can be read in two ways, or a clause that is not so.
     """
-    text = _GAP.sub(lambda gap: "\n" if "\n" in gap[0] else " ", plain_letters(text, place))
+    text = _GAP.sub(
+        lambda gap: "\n" if "\n" in gap[0] else " ", without_numbers(plain_letters(text, place))
+    )
+    text = _OF_STATE.sub(r"\1", text) if text.count("=") > 1 else text
     if holds is not None:
         text = without_clauses(text, place, holds)
     text = _GIVEN.sub("where", _COMMA.sub(r"\1.\2", _BRACED_COMMA.sub(".", text)))

@@ -50,6 +50,8 @@ _GREEK |= {rf"\var{name}": name for name in ("theta", "phi", "rho", "epsilon", "
 _THETAS = ([r"\theta"], [r"\vartheta"])
 _JOINTS = "123456789"
 """The joints whose angles a sum of angles has, ascending and without a gap."""
+_PARTS = (r"\omega", r"\phi", r"\varphi", r"\theta")
+r"""Of a Jacobian the angular part, of a pose its angle: ``J_\omega``, ``c_\phi``."""
 _OF_TOOL = ("x", "y")
 """Coordinates of the tool, whose rates a five-bar's formulas have."""
 _DOTS = {r"\dot": "d", r"\ddot": "dd"}
@@ -511,7 +513,9 @@ class _Reader:
         return text
 
     def plain(self, token: str) -> str:
-        token = token[1:] if token in _EXTREMES else _word(token) or token
+        if token in _EXTREMES or token in _PARTS:
+            token = token[1:].removeprefix("var")
+        token = _word(token) or token
         if token.isalnum():
             return token
         raise refused(

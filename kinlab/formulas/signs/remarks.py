@@ -23,6 +23,25 @@ _UNITS = rf"{_UNIT}{_BETWEEN}(?:{_UNIT}{_BETWEEN}){{0,9}}"
 _MORE = rf"(?:N|kg|{_UNIT}(?:{_BETWEEN}{_UNIT}){{1,9}}){_BETWEEN}"
 """Units that are no name of a length, a mass or an inertia: N, Nm, not m or J."""
 
+_OF_EQUATION = (
+    r"(?:(?:Gl|Eqn?|eqn?|式|公式)\.?\s*)?(?:[A-Z][.\-–]?)?\d{1,3}(?:[.\-–]\d{1,3}){0,2}\s?[a-z]?"
+)
+"""``3.12``, ``2-7``, ``A.3``, ``4b``: in parentheses behind a formula its number."""
+_APART = r"\\q?quad(?![A-Za-z])|\\[;:!,]|\\hfill?(?![A-Za-z])|\\[lcd]?dots(?![A-Za-z])|…|\.{3}|·{3}"
+_AHEAD = (
+    rf"(?<=[\w)}}\]²³$])(?=\s{{2}}|\s{{0,9}}(?:&\s{{0,9}})?(?:{_APART}))(?:\s|&|{_APART}){{1,40}}+"
+)
+_END = r"(?=[ \t]*(?:\$|\\\\|\n|\Z|\\end\b))"
+_NUMBERS = (
+    re.compile(rf"\s?\\l?eqno\s*(?:\{{[^{{}}]*\}}|\([^()]*\)|\S+){_END}"),
+    re.compile(rf"{_AHEAD}[(（\[]\s*{_OF_EQUATION}\s*[)）\]]{_END}"),
+    re.compile(rf"(?<=[)}}\]²³$])[ \t]\(\s*{_OF_EQUATION}\s*\){_END}"),
+    re.compile(
+        rf"(?<=\w)[ \t]\(\s*(?:[A-Z]|\d{{1,2}})[.\-–]\d{{1,3}}(?:[.\-–]\d{{1,3}})?[a-z]?\s*\){_END}"
+    ),
+)
+"""Numbers of equations; ``q (2)`` is an index."""
+
 _EVERYWHERE = (
     (re.compile(r"\\(?:tag\*?|label)\s*\{[^{}]*\}|\\(?:nonumber|notag)(?![A-Za-z])"), " "),
     (re.compile(r"\{\s*\\(?:rm|bf|it|sf)\s+(\w+)\s*\}"), r"\\mathrm{\1}"),
@@ -80,6 +99,13 @@ def _without_braces(text: str) -> str:
             text = f"{before} {inside} {text[behind:]}"
         else:
             start = found.end()
+    return text
+
+
+def without_numbers(text: str) -> str:
+    """The text without the numbers of its equations: ``x = l*c1  (3.12)``."""
+    for pattern in _NUMBERS:
+        text = pattern.sub("", text)
     return text
 
 

@@ -162,7 +162,7 @@ def squared(node: ast.BinOp) -> Iterator[ast.expr]:
 def crosswise(node: ast.BinOp) -> Iterator[ast.expr]:
     """One factor each of the last two terms for one another: ``a*d + c*b`` for ``a*b + c*d``.
 
-    Of terms with as many factors those in one place; of others names that begin alike.
+    Of terms with as many factors those in one place; of others those of which one is a name.
     """
     head, terms = chain(node, SUMS)
     *_, before, last = members((head, terms))
@@ -170,8 +170,8 @@ def crosswise(node: ast.BinOp) -> Iterator[ast.expr]:
     alike = len(one[1]) == len(other[1])
     for j, factor in enumerate(members(one)):
         for k, instead in enumerate(members(other)):
-            begins = {ast.unparse(x)[0] for x in (factor, instead) if isinstance(x, _NAMES)}
-            fits = j == k and bool(one[1]) if alike else len(begins) == 1
+            names = sum(isinstance(x, _NAMES) for x in (factor, instead))
+            fits = j == k and bool(one[1]) if alike else names > 0
             if fits and ast.dump(factor) != ast.dump(instead):
                 tail = (terms[-1][0], _with(other, k, factor))
                 yield _with((head, [*terms[:-1], tail]), len(terms) - 1, _with(one, j, instead))

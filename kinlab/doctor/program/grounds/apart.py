@@ -76,6 +76,10 @@ _Option = tuple[tuple[ProgramNumber, int], ...]
 """What numbers of a program are: which cells, by their numbers."""
 
 
+_Left = tuple[ProgramNumber, Label, bool, list[int]]
+"""A number of a program, what it is called, whether that tells what it is, and which cells."""
+
+
 @dataclass(frozen=True)
 class _Item:
     """Numbers of a program that are understood together.
@@ -247,13 +251,13 @@ class _Reader:
         self.fitting: set[Any] = set()
         self.odd = False
         self._look_at_names([x for x in zip(found, told, strict=True) if x[0].alone])
-        left_of: list[tuple[ProgramNumber, Label, bool, list[int]]] = []
+        given: list[tuple[ProgramNumber, Label, list[int]]] = []
         plain: list[float] = []
         for one, label in zip(found, told, strict=True):
             place, own = one.place, may_be_of_one_arm(one.value)
             may = self._alike(one) if one.value else []
             if may and (one.alone or own or one.given):
-                left_of.append((one, label, *self._as_called(may, label, place.part == DATA)))
+                given.append((one, label, may))
             elif own or (may and id(place.node) in summed):
                 self.whole = False
             elif may:
@@ -263,6 +267,13 @@ class _Reader:
             elif one.alone and isinstance(place.value, float) and not place.place:
                 self.whole = self.whole and named_at_will(one.value)
         unknown: dict[Any, list[tuple[ProgramNumber, list[int]]]] = {}
+        centres = self._whole_centres(given)
+        left_of: list[_Left] = [
+            (one, label, True, [centres[k]])
+            if k in centres
+            else (one, label, *self._as_called(may, label, one.place.part == DATA))
+            for k, (one, label, may) in enumerate(given)
+        ]
         for one, label, sure, left in left_of:
             if sure:
                 others = {k for other, *_rest, some in left_of if other is not one for k in some}
@@ -350,6 +361,24 @@ class _Reader:
             each = len(among) == count > 1 and owner in among and label[1] is None and not label[2]
             kept.append((*label[:2], (among.index(owner),)) if each else label)
         return kept
+
+    def _whole_centres(
+        self, given: Sequence[tuple[ProgramNumber, Label, list[int]]]
+    ) -> dict[int, int]:
+        """The cells of numbers that stand together as the coordinates of one link's centre do."""
+        rows: dict[Any, list[tuple[int, dict[int, int]]]] = {}
+        for k, (_one, (*name, at), may) in enumerate(given):
+            if at:
+                cells = [(x, self.cells[x].which) for x in may]
+                links = {link: x for x, (what, link) in cells if what == f"com{at[-1]}"}
+                rows.setdefault((*name, at[:-1]), []).append((k, links))
+        told: dict[int, int] = {}
+        for row in rows.values():
+            of = set.intersection(*(set(links) for _k, links in row))
+            if len(row) > 1 and len(of) == 1:
+                (link,) = of
+                told |= {k: links[link] for k, links in row}
+        return told
 
     def _look_at_names(self, named: Sequence[tuple[ProgramNumber, Label]]) -> None:
         """Which numbers the arm has as they are called, and whether any is odd among these."""

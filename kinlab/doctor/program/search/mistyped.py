@@ -38,7 +38,10 @@ def mistyped(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
     home = _home(robot)
     known = {abs(x) for x in (*own_numbers(robot).tolist(), *home)}  # -0.425 is typed 0.425, too
     for edit in of_table(trial, observed, robot):
-        if edit.kind == "entries swapped" or (edit.numbers and _is_sure(robot, *edit.numbers)):
+        number = edit.numbers
+        if edit.kind == "entries swapped" or (
+            number and (_is_sure(robot, *number) or (number[0] and _is_strange(robot, number[0])))
+        ):
             yield edit
     yield from of_other_rows(trial, observed, robot)
     for place in numbers(trial, observed):

@@ -62,7 +62,7 @@ _IN_ORDER = 30_000_000
 """Work for one slip after another."""
 _REACHED = 25_000_000
 """Work for the last one beside those with which a part of the answer is right."""
-_IN_STAGES = 50_000_000
+_IN_STAGES = 100_000_000
 """Work for slips of one part of an answer after another."""
 _ALONE, _IN_LANES, _WAYS = 3_000_000, 12_000_000, 2
 """Work for the last one beside them, run alone, and in lanes after that; of how many ways."""
@@ -101,12 +101,14 @@ def several(search: LineSearch) -> list[ProgramRepair]:
         found = looking.of_fewer(
             search, [_reduced(repair, search) for repair in looking.found(search)]
         )
-    return found or _right_here(search)
+    far = found and max(map(search.likely, found[0].edits)) >= _FAR
+    return (_right_here(search) or found) if far else found or _right_here(search)
 
 
 def _right_here(search: LineSearch) -> list[ProgramRepair]:
     """One plain slip with which all is right of this arm, and of no other as far as it is
-    understood which numbers of the program are whose: where nothing else explains the program.
+    understood which numbers of the program are whose: where nothing else explains the program,
+    or only what is far-fetched.
     """
     plain = [x for x in search.here if x.edits[0].numbers is None and _is_plain(x)]
     return sorted(plain, key=lambda one: search.likely(one.edits[0]))
@@ -224,7 +226,7 @@ class _Several:
             found = self._beside_a_right_function(search)
             if found:
                 return self.settled(search, found)
-        in_order = InOrder(search, known, 0 if search.stand else _IN_ORDER)
+        in_order = InOrder(search, known, _IN_ORDER if search.thorough else 0)
         one_by_one = in_order.found()
         found = [] if one_by_one is None else self._fewer(search, [one_by_one])
         found = found or self._last(search, in_order.reached[:_WAYS])
@@ -236,7 +238,7 @@ class _Several:
         if found:
             return self.settled(search, found)
         together = together or TriedTogether(search, known)
-        most = 0 if search.stand else _IN_STAGES
+        most = _IN_STAGES if search.thorough else 0
         stages = InStages(search, known, together, in_order.reached, most)
         found = tried.of_ways(stages.ways(two=False))
         if found:
@@ -245,11 +247,11 @@ class _Several:
             found = tried.likeliest(known, some)
             if found:
                 break
-        if not found and not search.stand:
+        if not found and search.thorough:
             found = tried.likeliest(known, together.beside_lanes())
-        if not found and together.usable and not search.stand:
+        if not found and together.usable and search.thorough:
             found = self._plain(search, tried)
-        if not found and together.usable and not search.stand:
+        if not found and together.usable and search.thorough:
             found = tried.likeliest(known, known.adding_up(3) + together.threes())
             found = found or tried.likeliest(known, together.any_three())
         found = found or tried.of_ways(stages.ways(two=True))
@@ -267,14 +269,16 @@ class _Several:
             return found
         joined = known
         if not together.thorough:
-            wider = None if search.stand else AtRest(search).effects(known, search.most // _RESTING)
+            wider = (
+                AtRest(search).effects(known, search.most // _RESTING) if search.thorough else None
+            )
             joined = known if wider is None else known.beside(wider)
             found = self.settled(search, tried.likeliest(joined, joined.pairs()))
         if not found:
             most = 1 if together.thorough else _STEPS
             gaining = _apart([joined.alike[k][0] for k in joined.gaining])[:most]
             found = self._after(search, [(x,) for x in gaining if (x,) not in firsts])
-        if not found and not search.stand:
+        if not found and search.thorough:
             if not together.usable:
                 found = tried.likeliest(known, known.adding_up(3))
             if not found and pose:
