@@ -158,8 +158,10 @@ def formula_file(
             del entries[key]
             entries |= parts
             doubts |= dict.fromkeys(parts, doubts[key])
+    explained: set[str] = set()
     for key, value in entries.items():
         own, entries[key] = typed.explained(_text(value, f"{place}: {key}"), key)
+        explained |= own.keys()
         own, entries[key] = with_matrices(own, entries[key], f"{place}: {key}")
         left = entries[key].partition("=")[0]
         if last is not None and is_of_other_frames(left, key, last):
@@ -190,7 +192,7 @@ def formula_file(
     others = (read({**entries, key: part}) for key, parts in chains.items() for part in parts[1:])
     remarks = {key: remark for key, remark in remarks.items() if remark}
     file = read(entries)
-    names = {*file.symbols}.union(
+    names = {*file.symbols, *explained}.union(
         *map(tree.names, [*file.formulas.values(), *file.symbols.values()])
     )
     matrices: dict[str, str] = {}

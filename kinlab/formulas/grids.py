@@ -168,7 +168,7 @@ def _total(text: str, place: str, writing: Hand) -> Grid | None:
                 made = _product(made, [[plain_formula(scalar, place, writing)]], place)
             made = _product(made, grids[int(k)], place) if k else made
         if sign == "-":
-            made = _product([["-1"]], made, place)
+            made = [[cell if cell == "0" else f"-{_single(cell)}" for cell in row] for row in made]
         total = made if total is None else _sum(total, made, place)
     return total
 
@@ -267,9 +267,17 @@ def _sum(left: Grid, right: Grid, place: str) -> Grid:
     if (len(left), len(left[0])) != (len(right), len(right[0])):
         raise refused(place, N_("matrices of different sizes have no sum"))
     return [
-        [" + ".join(c for c in (a, b) if c != "0") or "0" for a, b in zip(x, y, strict=True)]
-        for x, y in zip(left, right, strict=True)
+        [_added(a, b) for a, b in zip(x, y, strict=True)] for x, y in zip(left, right, strict=True)
     ]
+
+
+def _added(one: str, other: str) -> str:
+    if "0" in (one, other):
+        return one if other == "0" else other
+    taken = other[0] == "-" and (
+        _SINGLE.fullmatch(other[1:]) or closes(other[1:]) == len(other) - 2
+    )
+    return f"{one} - {other[1:]}" if taken else f"{one} + {other}"
 
 
 _SINGLE = re.compile(r"[\w.]+(?:\*\*\d+)?(?:\([^()]*\))?")
@@ -282,8 +290,12 @@ def _times(left: str, right: str, place: str) -> str:
         return right if left == "1" else left
     if len(left) + len(right) > LONGEST:
         raise refused(place, N_("a product of matrices too long to be written out"))
-    left, right = (one if _SINGLE.fullmatch(one) else f"({one})" for one in (left, right))
-    return f"{left}*{right}"
+    return f"{_single(left)}*{_single(right)}"
+
+
+def _single(text: str) -> str:
+    """A factor, in parentheses where it is a sum or a product."""
+    return text if _SINGLE.fullmatch(text) else f"({text})"
 
 
 # -------- Rows of MATLAB

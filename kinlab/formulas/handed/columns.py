@@ -40,7 +40,12 @@ def of_column(text: str, entry: str, place: str) -> str:
     except ExpressionError:
         return text
     right = found["right"].strip()
+    order = [_OF_TOOL.get(name, -1) for name in names]
+    of_rates = "jacobian" in entry and -1 not in order and order == sorted({*order})
+    right = _without_rates(right) if of_rates else right
     typeset = f"${right}$" if "\\" in text else right
+    if of_rates and right != found["right"].strip():
+        return typeset
     heads = {name.rstrip("0123456789") for name in names}
     in_order = [f"{head}{k}" for head in heads for k in range(1, len(names) + 1)] == names
     if in_order and of_one_name(heads.pop(), wanted):
@@ -54,6 +59,28 @@ def of_column(text: str, entry: str, place: str) -> str:
     if rows is None or len(rows) != len(names) or any(len(row) != 1 for row in rows):
         return text
     return rows[places[0]][0]
+
+
+_OF_TOOL = {f"{x}d": k for k, x in enumerate("xyz")} | {f"v_{x}": k for k, x in enumerate("xyz")}
+_OF_TOOL |= {f"v{x}": k for k, x in enumerate("xyz")}
+_OF_TOOL |= {f"omega{x}": 3 + k for k, x in enumerate("xyz")} | {"phid": 5, "thetad": 5}
+"""Rates of the tool, of which J makes those of the joints, and in which order they stand."""
+_RATE = re.compile(r"(?:q|theta|th)d\d|d(?:q|th|theta)\d")
+
+
+def _without_rates(text: str) -> str:
+    """The matrix before a column of the joints' rates."""
+    at = max(text.rfind("\\begin"), text.rfind("["))
+    found = _LEFT.match(f"{text[at:]} = 1") if at > 0 else None
+    parts = re.split(r"\\\\|[;,]", found["names"] or found["list"]) if found else []
+    try:
+        rates = [entry_name(part.strip("& ")) for part in parts if part.strip()]
+    except ExpressionError:
+        return text
+    before = re.sub(r"(?:\\left\s*[(\[]|\*|@|\\cdot)?\s*$", "", text[:at])
+    in_order = [one[-1] for one in rates] == [str(k) for k in range(1, len(rates) + 1)]
+    named = rates and in_order and all(map(_RATE.fullmatch, rates))
+    return before.strip() if named else text
 
 
 def _same(name: str, wanted: str) -> bool:

@@ -52,8 +52,8 @@ _JOINTS = "123456789"
 """The joints whose angles a sum of angles has, ascending and without a gap."""
 _PARTS = (r"\omega", r"\phi", r"\varphi", r"\theta")
 r"""Of a Jacobian the angular part, of a pose its angle: ``J_\omega``, ``c_\phi``."""
-_OF_TOOL = ("x", "y")
-"""Coordinates of the tool, whose rates a five-bar's formulas have."""
+_OF_TOOL = ("x", "y", "z", "phi")
+"""Coordinates of the tool, whose rates a five-bar's formulas have, and what J makes."""
 _DOTS = {r"\dot": "d", r"\ddot": "dd"}
 _BRACES = {r"\{": "(", r"\}": ")"}
 _WITHOUT = N_("a function without parentheses before {text}")

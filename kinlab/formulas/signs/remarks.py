@@ -27,20 +27,30 @@ _OF_EQUATION = (
     r"(?:(?:Gl|Eqn?|eqn?|式|公式)\.?\s*)?(?:[A-Z][.\-–]?)?\d{1,3}(?:[.\-–]\d{1,3}){0,2}\s?[a-z]?"
 )
 """``3.12``, ``2-7``, ``A.3``, ``4b``: in parentheses behind a formula its number."""
-_APART = r"\\q?quad(?![A-Za-z])|\\[;:!,]|\\hfill?(?![A-Za-z])|\\[lcd]?dots(?![A-Za-z])|…|\.{3}|·{3}"
+_APART = (
+    r"\\q?quad(?![A-Za-z])|\\[;:!,]|\\hfill?(?![A-Za-z])|\\[lcd]?dots(?![A-Za-z])"
+    r"|…|\.{3}|·{3}|-{2,9}|[—–―]|[,;，；]\s"
+)
 _AHEAD = (
     rf"(?<=[\w)}}\]²³$])(?=\s{{2}}|\s{{0,9}}(?:&\s{{0,9}})?(?:{_APART}))(?:\s|&|{_APART}){{1,40}}+"
 )
 _END = r"(?=[ \t]*(?:\$|\\\\|\n|\Z|\\end\b))"
 _NUMBERS = (
     re.compile(rf"\s?\\l?eqno\s*(?:\{{[^{{}}]*\}}|\([^()]*\)|\S+){_END}"),
-    re.compile(rf"{_AHEAD}[(（\[]\s*{_OF_EQUATION}\s*[)）\]]{_END}"),
-    re.compile(rf"(?<=[)}}\]²³$])[ \t]\(\s*{_OF_EQUATION}\s*\){_END}"),
+    re.compile(rf"{_AHEAD}(?:[(（\[]\s*{_OF_EQUATION}\s*[)）\]]|[①-⒇]){_END}"),
+    re.compile(
+        rf"(?<=[)}}\]²³$])[ \t]?(?:\(\s*(?:{_OF_EQUATION}|\*{{1,3}}|[ivx]{{1,4}})\s*\)|[①-⒇]){_END}"
+    ),
+    re.compile(rf"(?<=[)}}\]²³$])[ \t]\[\d{{1,3}}\]{_END}"),
     re.compile(
         rf"(?<=\w)[ \t]\(\s*(?:[A-Z]|\d{{1,2}})[.\-–]\d{{1,3}}(?:[.\-–]\d{{1,3}})?[a-z]?\s*\){_END}"
     ),
+    re.compile(
+        r"(?m)^[ \t]*(?:[①-⒇]|\([a-h]\)|[-*•–—])[ \t]+(?=[$\\]{0,3}[A-Za-zτθ][^=\n]{0,20}=)"
+    ),
+    re.compile(r"[ \t]*[✓✔☑∎■□]+[ \t]*$"),
 )
-"""Numbers of equations; ``q (2)`` is an index."""
+"""Numbers of equations, and of items; ``q (2)`` is an index."""
 
 _EVERYWHERE = (
     (re.compile(r"\\(?:tag\*?|label)\s*\{[^{}]*\}|\\(?:nonumber|notag)(?![A-Za-z])"), " "),
