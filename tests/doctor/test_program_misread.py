@@ -187,3 +187,140 @@ def test_two_entries_inside_of_a_row_are_exchanged(tmp_path):
     assert cause.kinds == ("entries swapped",) and cause.error_after < 1e-9
     assert "line 5, dyn['second'][1]" in cause.sentence
     assert "`0, 0.4, 0` should be `0.4, 0, 0`" in cause.sentence
+
+
+LIFTED = """
+import numpy as np
+
+def f(q):
+    m3 = 1.2
+    c = (0.12, 0.03, 0.01)
+    dh = c[0]*np.cos(q[2]) - c[1]*np.sin(q[2])
+    return np.array([0.0, 0.0, m3*9.81*dh])
+"""
+
+
+def test_coordinates_that_stand_together_are_those_of_one_centre():
+    """The 0.03 is link 3's across, and not link 2's along its axis, nor link 2's because second."""
+    told_in_its_line("spatial3r", "gravity_torques", LIFTED, "- c[1]", "+ c[1]")
+
+
+KANE = """
+import numpy as np
+
+L  = [0.5, 0.4, 0.25]
+LC = [0.25, 0.2, 0.125]
+MB = [3.0, 2.0, 1.0]
+IB = [MB[k]*L[k]**2/12 for k in range(3)]
+
+def f(q, u, udot):
+    th, om, al = np.cumsum(q), np.cumsum(u), np.cumsum(udot)
+    e = [np.array([np.cos(t), np.sin(t)]) for t in th]
+    n = [np.array([-np.sin(t), np.cos(t)]) for t in th]
+    tau = np.zeros(3)
+    for b in range(3):
+        acc = LC[b]*(al[b]*n[b] - om[b]**2*e[b])
+        for k in range(b):
+            acc = acc + L[k]*(al[k]*n[k] - om[k]**2*e[k])
+        for r in range(b + 1):
+            vr = LC[b]*n[b]
+            for k in range(r, b):
+                vr = vr + L[k]*n[k]
+            tau[r] += MB[b]*9.81*vr[1] + MB[b]*(acc @ vr) + IB[b]*al[b]
+    return tau
+"""
+
+
+def test_beside_a_number_that_is_none_of_the_arm_s_others_are_looked_for_as_widely():
+    slips = [
+        ("[0.5, 0.4, 0.25]", "[0.5, 0.45, 0.25]"),
+        ("LC[b]*(al[b]*n[b] - om[b]**2", "LC[b]*(al[b]*n[b] - om[b]"),
+        ("IB[b]*al[b]", "IB[b]*udot[b]"),
+    ]
+    found, _good = asked(with_slips(KANE, slips), "planar3r", "inverse_dynamics")
+    (cause,) = found.causes
+    for told in ("0.45 should be 0.4", "om[b]**2*e[b])`", "IB[b]*al[b]`"):
+        assert told in cause.sentence
+
+
+REACHED = """
+import numpy as np
+
+a2, a3, lt = 0.45, 0.35, 0.30
+
+def f(x, y, z):
+    found = []
+    s3 = np.clip(z/lt, -1, 1)
+    for c3 in (np.sqrt(1 - s3**2), -np.sqrt(1 - s3**2)):
+        q3 = np.arctan2(s3, c3)
+        k = a3 + lt*c3
+        D = (x*x + y*y - a2*a2 - k*k)/(2*a2*k)
+        if abs(D) > 1 + 1e-9:
+            continue
+        for elbow in (1, -1):
+            q2 = elbow*np.arccos(np.clip(D, -1, 1))
+            q1 = np.arctan2(y, x) - np.arctan2(k*np.sin(q2), a2 + k*np.cos(q2))
+            found.append(((q1 + np.pi) % (2*np.pi) - np.pi, q2, q3))
+    return np.array(found) if found else np.zeros((1, 3))
+"""
+
+
+def test_lengths_of_terms_with_more_factors_are_exchanged():
+    exchanged = ("a2 + k*np.cos(q2)", "k + a2*np.cos(q2)")
+    told_in_its_line("spatial3r", "inverse_kinematics_xyz", REACHED, *exchanged)
+
+
+COMPOSITE = """
+import numpy as np
+
+def sk(x):
+    return np.array([[0, -x[2], x[1]], [x[2], 0, -x[0]], [-x[1], x[0], 0]], float)
+
+class Body:
+    def __init__(self, a, alpha, d, m, com, ixx, iyy, izz):
+        self.a, self.alpha, self.d = a, alpha, d
+        c = sk(com)
+        self.I = np.zeros((6, 6))
+        self.I[:3, :3] = np.diag([ixx, iyy, izz]) + m * c @ c.T
+        self.I[:3, 3:] = m * c
+        self.I[3:, :3] = m * c.T
+        self.I[3:, 3:] = m * np.eye(3)
+
+    def X(self, q):
+        Rz = np.array([[np.cos(q), -np.sin(q), 0], [np.sin(q), np.cos(q), 0], [0, 0, 1]])
+        ca, sa = np.cos(self.alpha), np.sin(self.alpha)
+        R = Rz @ np.array([[1, 0, 0], [0, ca, -sa], [0, sa, ca]])
+        p = Rz @ np.array([self.a, 0, self.d])
+        return np.block([[R.T, np.zeros((3, 3))], [-R.T @ sk(p), R.T]])
+
+h = np.pi / 2
+arm = [Body(0.0, h, 0.1273, 7.778, (0, 0, 0), 0.031474313, 0.021875625, 0.031474313),
+       Body(-0.612, 0, 0.0, 12.93, (0.306, 0, 0.220941), 0.036365625, 0.421753804, 0.421753804),
+       Body(-0.5723, 0, 0.0, 3.87, (0.28615, 0, 0.049041), 0.010884375, 0.111069694, 0.111069694),
+       Body(0.0, h, 0.163941, 1.96, (0, -0.1149, 0), 0.005108248, 0.005108248, 0.0055125),
+       Body(0.0, -h, 0.1157, 1.96, (0, 0.1157, 0), 0.005108248, 0.0055125, 0.005108248),
+       Body(0.0, 0, 0.0922, 0.202, (0, 0, -0.0922), 0.000526462, 0.000568125, 0.000526462)]
+
+def f(q):
+    n = len(arm)
+    X = [b.X(t) for b, t in zip(arm, q)]
+    S = [x[:, 2] for x in X]
+    Ic = [b.I.copy() for b in arm]
+    H = np.zeros((n, n))
+    for i in range(n - 1, -1, -1):
+        if i:
+            Ic[i - 1] += X[i].T @ Ic[i] @ X[i]
+        F = Ic[i] @ S[i]
+        H[i, i] = S[i] @ F
+        j = i
+        while j > 0:
+            F = X[j].T @ F
+            j -= 1
+            H[i, j] = H[j, i] = F @ S[j]
+    return H
+"""
+
+
+def test_a_tensor_s_way_to_another_point_is_found_where_its_parts_stand_in_other_lines(tmp_path):
+    slip = "izz]) + m * c @ c.T", "izz])"
+    told_in_its_line("ur10", "mass_matrix", COMPOSITE, *slip, tmp_path / "composite.py")

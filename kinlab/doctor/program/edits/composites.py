@@ -31,6 +31,8 @@ _ALL_AXES = 1.06
 """Cost of a body's energy about all axes for that about one."""
 _BESIDE = 1.06
 """Cost of what the same statement has the parts of."""
+_NEAR = 1.08
+"""The same of what another statement has the parts of."""
 _OF_SUMMANDS = 1.08
 """Cost of the cross product of a rate that is turned and of what is added to it elsewhere."""
 _LAST = 0.01
@@ -131,11 +133,12 @@ def _parallel_axes_of_tensors(here: Here, scope: Scope) -> Iterator[ProgramEdit]
     for mass in masses:
         for one in added:
             first = isinstance(one.op, ast.MatMult) if isinstance(one, ast.BinOp) else False
-            times: ast.expr = ast.BinOp(mass, ast.Mult(), one)
+            times = ast.BinOp(mass, ast.Mult(), one)
             if first and isinstance(one, ast.BinOp):  # as it is typed: m*S @ S.T
                 times = ast.BinOp(ast.BinOp(mass, ast.Mult(), one.left), one.op, one.right)
             beside = {*names(times)} <= scope.names_in(statement_of(here.above))  # m*S stands there
-            cost = _BESIDE if beside else 1.14
+            near = first and text_of(times.left) in scope.pieces_here(_TENSOR)
+            cost = _BESIDE if beside else _NEAR if near else 1.14
             yield here.instead(ast.BinOp(node, ast.Add(), times), "missing term", cost)
 
 

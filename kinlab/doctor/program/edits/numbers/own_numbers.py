@@ -17,7 +17,7 @@ from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.numbers.as_the_arm import typed
 from kinlab.doctor.program.edits.numbers.data import NumberPlace, measured, numbers
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import ANGLES, DATA, Here, ProgramEdit, number, places
+from kinlab.doctor.program.places import ANGLES, DATA, Here, ProgramEdit, number, places, root
 from kinlab.doctor.program.trial import Trial
 from kinlab.fivebar import FiveBar
 from kinlab.model.dh import DHTable
@@ -264,7 +264,9 @@ def _moves_left_out(
     calls: dict[str, ast.Call] = {}
     for tree in trial.trees:
         for node in nodes(tree):
-            if isinstance(node, ast.Call) and observed.shape(node) in _TRANSFORMS and node.args:
+            if not isinstance(node, ast.Call) or root(node.func) in ("np", "numpy"):
+                continue  # no np.diag
+            if observed.shape(node) in _TRANSFORMS and node.args:
                 zeros = sum(isinstance(x, ast.Constant) and x.value == 0 for x in node.args)
                 if 2 * zeros >= len(node.args) or len(node.args) == 1:
                     calls.setdefault(ast.unparse(node.func), node)
