@@ -21,6 +21,8 @@ from kinlab.doctor.program.trial import Trial
 
 _COST = 0.97
 """Cost of the arm's number for one that is in no column of its table."""
+_SIZE = 1.5
+"""Of two numbers that may be one, how many times as large the one is."""
 _DIGITS = 3
 """Digits of a number that tell whose it is wherever it stands."""
 _DECIMALS = 12
@@ -40,7 +42,7 @@ def mistyped(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
     for edit in of_table(trial, observed, robot):
         number = edit.numbers
         if edit.kind == "entries swapped" or (
-            number and (_is_sure(robot, *number) or (number[0] and _is_strange(robot, number[0])))
+            number and (_is_sure(robot, *number) or _is_near_none(robot, *number))
         ):
             yield edit
     yield from of_other_rows(trial, observed, robot)
@@ -60,6 +62,12 @@ def _is_sure(robot: Any, typed: float, meant: float) -> bool:
     if typed == -meant and is_own(robot, typed):
         return False
     return is_slip(typed, meant) or typed == 2 * meant
+
+
+def _is_near_none(robot: Any, typed: float, meant: float) -> bool:
+    """Whether a number of a column is none of the arm's, and of the size of the one that is."""
+    near = typed != round(typed) and meant != 0 and 1 / _SIZE <= typed / meant <= _SIZE
+    return near and _is_strange(robot, typed)
 
 
 def _home(robot: Any) -> set[float]:

@@ -138,7 +138,7 @@ class LineSearch:
         self.parallel: list[ProgramRepair] = []
         self.here: list[ProgramRepair] = []
         self.ahead: list[ProgramEdit] = []
-        self.most, self.thorough = _WORK, True
+        self.most, self.thorough, self.wide = _WORK, True, True
         self.trial, self.case = Trial(program), case
         self.asked = Asked(self.trial, case, wanted, allowed)
         states = [
@@ -193,7 +193,7 @@ class LineSearch:
             thorough: whether as much is done as if nothing stood; else a part of it.
         """
         other = copy.copy(self)
-        other.stand, other.tried, other.thorough = stand, [], thorough
+        other.stand, other.tried, other.thorough, other.wide = stand, [], thorough, False
         other._alone, other.ahead, other.here = None, [], []
         if not thorough:
             other.most, other.in_lanes, other.heavy = self.most // _SHARE, 0, False

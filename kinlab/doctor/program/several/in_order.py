@@ -84,7 +84,7 @@ class InOrder:
     def _verdict(self, way: Way) -> ProgramRepair | None:
         try:
             with changed(self.search.trial, way):
-                return self.search.verdict(way)
+                return self.search.verdict((*self.search.stand, *way))
         except NoProgramError:
             return None
 
@@ -100,7 +100,7 @@ class InOrder:
             self.reached.append(stand)
         try:
             with changed(search.trial, stand):
-                here = search.beside(stand)
+                here = search.beside((*search.stand, *stand))
                 here.look_again()
                 self.left -= _LOOKING
                 suspected = behind(here.trial, here.observed, here.known)

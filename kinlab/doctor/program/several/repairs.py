@@ -170,14 +170,22 @@ def of_mistyped(search: LineSearch) -> list[ProgramRepair]:
             return []
         if any(map(_is_plain, search.singles()[:1])):
             return []  # what one edit explains needs no number beside it
-        for way in odd:
-            with changed(search.trial, way):
-                here = _beside(search, way, thorough=True)
-                found = here.singles() or looking.found(here)
-            if found:
-                found = looking.settled(search, found, 1)
-                return [_reduced(one, search) for one in found]
+        begun: list[tuple[Way, LineSearch]] = []
+        for wide in (False, True):
+            begun = begun or [(way, _beside_a_number(search, way)) for way in odd]
+            for way, here in begun:
+                here.wide = wide
+                with changed(search.trial, way):
+                    found = here.singles() or looking.found(here)
+                if found:
+                    found = looking.settled(search, found, 1)
+                    return [_reduced(one, search) for one in found]
     return []
+
+
+def _beside_a_number(search: LineSearch, way: Way) -> LineSearch:
+    with changed(search.trial, way):
+        return _beside(search, way, thorough=True)
 
 
 def _reduced(repair: ProgramRepair, search: LineSearch) -> ProgramRepair:
@@ -226,7 +234,7 @@ class _Several:
             found = self._beside_a_right_function(search)
             if found:
                 return self.settled(search, found)
-        in_order = InOrder(search, known, _IN_ORDER if search.thorough else 0)
+        in_order = InOrder(search, known, _IN_ORDER if search.wide else 0)
         one_by_one = in_order.found()
         found = [] if one_by_one is None else self._fewer(search, [one_by_one])
         found = found or self._last(search, in_order.reached[:_WAYS])
@@ -238,7 +246,7 @@ class _Several:
         if found:
             return self.settled(search, found)
         together = together or TriedTogether(search, known)
-        most = _IN_STAGES if search.thorough else 0
+        most = _IN_STAGES if search.wide else 0
         stages = InStages(search, known, together, in_order.reached, most)
         found = tried.of_ways(stages.ways(two=False))
         if found:
@@ -247,11 +255,11 @@ class _Several:
             found = tried.likeliest(known, some)
             if found:
                 break
-        if not found and search.thorough:
+        if not found and search.wide:
             found = tried.likeliest(known, together.beside_lanes())
-        if not found and together.usable and search.thorough:
+        if not found and together.usable and search.wide:
             found = self._plain(search, tried)
-        if not found and together.usable and search.thorough:
+        if not found and together.usable and search.wide:
             found = tried.likeliest(known, known.adding_up(3) + together.threes())
             found = found or tried.likeliest(known, together.any_three())
         found = found or tried.of_ways(stages.ways(two=True))
@@ -269,16 +277,14 @@ class _Several:
             return found
         joined = known
         if not together.thorough:
-            wider = (
-                AtRest(search).effects(known, search.most // _RESTING) if search.thorough else None
-            )
+            wider = AtRest(search).effects(known, search.most // _RESTING) if search.wide else None
             joined = known if wider is None else known.beside(wider)
             found = self.settled(search, tried.likeliest(joined, joined.pairs()))
         if not found:
             most = 1 if together.thorough else _STEPS
             gaining = _apart([joined.alike[k][0] for k in joined.gaining])[:most]
             found = self._after(search, [(x,) for x in gaining if (x,) not in firsts])
-        if not found and search.thorough:
+        if not found and search.wide:
             if not together.usable:
                 found = tried.likeliest(known, known.adding_up(3))
             if not found and pose:

@@ -89,7 +89,7 @@ class TriedTogether:
 
     def __init__(self, search: LineSearch, known: Effects) -> None:
         self.search, self.known = search, known
-        self.left = max(_LEAST, _ALL - search.work.done) if search.thorough else search.most
+        self.left = max(_LEAST, _ALL - search.work.done) if search.wide else search.most
         self.count = 1 + (search.case.quantity.name in ANY_ZERO)
         self.sound = np.empty(0, dtype=int)
         self.usable, self.thorough, self.each = False, False, 0.0
@@ -168,7 +168,7 @@ class TriedTogether:
     def pairs(self) -> Iterator[list[Chosen]]:
         """Any two edits that make the program right, some at a time, the likeliest first."""
         found: list[Chosen] = []
-        before, kept = 0, self.left // _FOR_THREES if self.search.thorough else 0
+        before, kept = 0, self.left // _FOR_THREES if self.search.wide else 0
         for rank, chosen in self._in_turn() if self.usable else ():
             if rank != before and found:
                 yield sorted(found, key=self.known.cost)
