@@ -101,14 +101,12 @@ def several(search: LineSearch) -> list[ProgramRepair]:
         found = looking.of_fewer(
             search, [_reduced(repair, search) for repair in looking.found(search)]
         )
-    far = found and max(map(search.likely, found[0].edits)) >= _FAR
-    return (_right_here(search) or found) if far else found or _right_here(search)
+    return found or _right_here(search)
 
 
 def _right_here(search: LineSearch) -> list[ProgramRepair]:
     """One plain slip with which all is right of this arm, and of no other as far as it is
-    understood which numbers of the program are whose: where nothing else explains the program,
-    or only what is far-fetched.
+    understood which numbers of the program are whose: where nothing else explains the program.
     """
     plain = [x for x in search.here if x.edits[0].numbers is None and _is_plain(x)]
     return sorted(plain, key=lambda one: search.likely(one.edits[0]))
