@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from functools import reduce
 from itertools import product
 
-from kinlab.doctor.bytecode.syntax import factors, names, nodes, text_of
+from kinlab.doctor.bytecode.syntax import called, factors, names, nodes, text_of
 from kinlab.doctor.program.edits.chains import chain, joined
 from kinlab.doctor.program.edits.scope.forms import statement_of
 from kinlab.doctor.program.edits.scope.part import Scope
@@ -35,6 +35,8 @@ _NEAR = 1.08
 """The same of what another statement has the parts of."""
 _OF_SUMMANDS = 1.08
 """Cost of the cross product of a rate that is turned and of what is added to it elsewhere."""
+_AS_LEVER = 1.07
+"""Cost of a lever more that another product of the statement has."""
 _LAST = 0.01
 """What a factor of the last matrix of a product costs more."""
 _FEW = 8
@@ -321,16 +323,21 @@ def _carried_on(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
 
 
 def _is_arm(node: ast.expr) -> bool:
+    if isinstance(node, ast.Call) and called(node) in ("array", "asarray") and len(node.args) == 1:
+        return _is_arm(node.args[0])
     return isinstance(node, ast.Name | ast.Subscript | ast.Attribute) and _begins(node, _ARMS)
 
 
 def _of_levers(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """A lever that begins, or ends, elsewhere: ``cross(r + c, F)`` for ``cross(c, F)``."""
-    own = text_of(here.node)
+    own, statement = text_of(here.node), statement_of(here.above)
     arms = [(text, one) for text, one in scope.simple(_VECTOR) if _begins(one, _ARMS)]
+    calls = [x for x in nodes(statement) if isinstance(x, ast.Call) and x.args]
+    levers = {text_of(x.args[0]) for x in calls if scope.crosses(x)}
     for text, other in arms[: 2 * _FEW]:
         if text != own:
-            for op, cost in ((ast.Add(), 1.12), (ast.Sub(), 1.14)):
+            first = _AS_LEVER if text in levers else 1.12
+            for op, cost in ((ast.Add(), first), (ast.Sub(), 1.14)):
                 yield here.instead(ast.BinOp(here.node, op, other), "missing term", cost)
 
 

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from itertools import combinations
 from typing import Any
 
-from kinlab.doctor.bytecode.syntax import called, copied, names, nodes
+from kinlab.doctor.bytecode.syntax import called, copied, names, nodes, text_of
+from kinlab.doctor.program.edits.chains import SUMS, chain, joined, opposite
 from kinlab.doctor.program.edits.scope.forms import Turned
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.observed import Observed, Shape
@@ -15,6 +16,8 @@ from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, follow, numb
 
 _ANGLES = 1.13
 """Cost of the joint before in every angle of a statement."""
+_TURNED = 1.02
+"""Cost of a rotation in the plane the other way: ``c*x + s*y, -s*x + c*y``."""
 _MOST = 6
 """Names of one statement of which any two may be exchanged."""
 
@@ -56,10 +59,30 @@ def of_statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
                 if other != text and other[0] == text[0] and other not in uses:
                     new = Renamed({text: node}).of(value)
                     yield here.within(here.node, "value", new, "name", 1.14)
+    for text in names if isinstance(value, ast.Tuple | ast.List) and len(value.elts) == 2 else ():
+        turned = [_with_the_other_sign(one, text) for one in value.elts] if not shapes[text] else []
+        elts = [one for one in turned if one is not None]
+        if len(elts) == 2:
+            yield here.within(here.node, "value", type(value)(elts, ast.Load()), "sign", _TURNED)
     turns = {called(n) for n in nodes(value) if isinstance(n, ast.Call)} & {"sin", "cos"}
     count = sum(isinstance(n, ast.Call) and called(n) in ANGLES for n in nodes(value))
     if turns and count > 1:
         yield here.within(here.node, "value", Turned().visit(copied(value)), "sin/cos", 1.1)
+
+
+def _with_the_other_sign(node: ast.expr, name: str) -> ast.expr | None:
+    """A sum in which the one term with a name has the other sign: None of what has no such."""
+    first, terms = chain(node, SUMS)
+    every = [first, *(term for _op, term in terms)]
+    has = [k for k, term in enumerate(every) if name in {text_of(x) for x in nodes(term)}]
+    if len(has) != 1 or not terms:
+        return None
+    (k,) = has
+    if not k:
+        return joined(opposite(first), terms)
+    op, term = terms[k - 1]
+    other = ast.Sub() if isinstance(op, ast.Add) else ast.Add()
+    return joined(first, [*terms[: k - 1], (other, term), *terms[k:]])
 
 
 def _is_given(here: Here, node: ast.expr) -> bool:

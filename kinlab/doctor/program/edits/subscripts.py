@@ -13,8 +13,8 @@ from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import Here, ProgramEdit
 
-_LETTER, _EXCHANGED = 1.04, 1.05
-"""Cost of another letter, and of two for one another."""
+_LETTER, _EXCHANGED, _THROUGHOUT = 1.04, 1.05, 1.0
+"""Cost of another letter, of two for one another, of those of one array at all its places."""
 _MORE = 1.1
 """Cost of an array that lacks."""
 _ARROW, _BETWEEN = "->", ","
@@ -37,7 +37,8 @@ def of_subscripts(here: Here, observed: Observed, scope: Scope) -> Iterator[Prog
     answer = observed.shape(call)
     lone = _lone(own)
     seen = {_renamed(own)}
-    for new, kind, cost in (*_other_letters(own), *_exchanged(own)):
+    every = (*_turned(own, call.args[1:]), *_other_letters(own), *_exchanged(own))
+    for new, kind, cost in every:
         if _renamed(new) not in seen and _lone(new) <= lone and _fits(new, shapes, answer):
             seen.add(_renamed(new))
             yield here.within(here.node, "value", new, kind, cost)
@@ -83,6 +84,19 @@ def _exchanged(text: str) -> Iterator[tuple[str, str, float]]:
                 "transposed",
                 _EXCHANGED,
             )
+
+
+def _turned(text: str, given: list[ast.expr]) -> Iterator[tuple[str, str, float]]:
+    """An array that stands at several places transposed at each: ``R.T @ I @ R``."""
+    groups, _arrow, result = text.partition(_ARROW)
+    arrays = [ast.dump(one) for one in given]
+    for name, count in Counter(arrays).items():
+        if count > 1 and len(arrays) == groups.count(_BETWEEN) + 1:
+            new = [
+                group[:-2] + group[:-3:-1] if array == name and len(group) > 1 else group
+                for group, array in zip(groups.split(_BETWEEN), arrays, strict=True)
+            ]
+            yield _BETWEEN.join(new) + _ARROW + result, "transposed", _THROUGHOUT
 
 
 def _lone(text: str) -> set[str]:
