@@ -257,8 +257,12 @@ class _Reader:
         return tree.call(plain, *args)
 
 
-def _refuse_deep(text: str, place: str) -> None:
-    """Bounds nesting and chains before Python's own parser sees the text."""
+def refuse_nested(text: str, place: str) -> None:
+    """Bounds nesting, before anything looks for where brackets are closed.
+
+    Raises:
+        ExpressionError: too many levels.
+    """
     depth = deepest = 0
     for character in text:
         depth += {"(": 1, "[": 1, "{": 1, ")": -1, "]": -1, "}": -1}.get(character, 0)
@@ -270,6 +274,11 @@ def _refuse_deep(text: str, place: str) -> None:
             deepest=deepest,
             nesting=_NESTING,
         )
+
+
+def _refuse_deep(text: str, place: str) -> None:
+    """Bounds nesting and chains before Python's own parser sees the text."""
+    refuse_nested(text, place)
     signs = sum(text.count(character) for character in "+-*/")
     if signs > _CHAIN * 4:
         raise refused(place, N_("{signs} operators; at most {most}"), signs=signs, most=_CHAIN * 4)

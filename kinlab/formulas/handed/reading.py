@@ -15,6 +15,7 @@ from kinlab.formulas.handed.units import without_units
 from kinlab.formulas.handed.words import without_words
 from kinlab.formulas.signs.dressed import undressed
 from kinlab.formulas.signs.remarks import without_numbers
+from kinlab.formulas.text import refuse_nested
 
 _ALONE = re.compile(
     r"(?:p_?)?[xyz]|[VUPTKL]|phi|det\w*|E_?[pk]|\w*energy|lagrangian|[\w,\[\]]*[\d\]]"
@@ -30,6 +31,7 @@ _OF_STATE = re.compile(
     r"\((?:[\s{},]|\\d{0,2}dot(?![A-Za-z])|\\(?:mathbf|boldsymbol|bm|theta)(?![A-Za-z])|(?:q|th|theta|θ)d{0,2}(?![\w])|d{1,2}q)+\)"
 )
 """``M(q)``, ``C(q, \\dot q)``: a matrix with all joints' positions, which says nothing more."""
+_DOLLARS = re.compile(r"\${3,}")
 _MEANS = re.compile(
     r"(?<==)([^=]+?)[,，;；]\s*(?=\$?[lLmI]_?\{?c?\d\}?\$?\s*(?:为|是|表示|(?:is|are|denotes?|being|ist)\s))"
 )
@@ -87,6 +89,8 @@ def as_formula(
     Raises:
         ExpressionError: what can be read in two ways, or a clause that is not so.
     """
+    refuse_nested(text, place)
+    text = _DOLLARS.sub("$$", text)
     text = _GAP.sub(
         lambda gap: "\n" if "\n" in gap[0] else " ", without_numbers(plain_letters(text, place))
     )

@@ -48,7 +48,7 @@ _NUMBERS = (
     re.compile(
         r"(?m)^[ \t]*(?:[①-⒇]|\([a-h]\)|[-*•–—])[ \t]+(?=[$\\]{0,3}[A-Za-zτθ][^=\n]{0,20}=)"
     ),
-    re.compile(r"[ \t]*[✓✔☑∎■□]+[ \t]*$"),
+    re.compile(r"(?<![ \t])[ \t]{0,40}[✓✔☑∎■□]+[ \t]*$"),
 )
 """Numbers of equations, and of items; ``q (2)`` is an index."""
 
