@@ -38,8 +38,8 @@ def told(robot, quantity, text):
 @pytest.mark.parametrize(
     "behind",
     [
-        "      (3.12)", "   (2)", " (3.12)", " (2)", "(2)", "  [3.12]", " [12]", ", (3)", " …… (3-12)",
-        " --- (3)", " (*)", " (ii)", "  (4b)", "   (A.3)", "    （3.12）", "    (式2-3)", " ①", " ✓",
+        "      (3.12)", "   (2)", "  [3.12]", ", (3)", " …… (3-12)", " --- (3)", " (*)", " (ii)",
+        "  (4b)", "   (A.3)", "    （3.12）", "    (式2-3)", " ①", " ✓",
     ],
 )  # fmt: skip
 def test_the_number_of_an_equation_is_no_factor(behind):
@@ -49,10 +49,17 @@ def test_the_number_of_an_equation_is_no_factor(behind):
     assert "should be + l2" in wrong.causes[0].sentence
 
 
+@pytest.mark.parametrize("behind", [" (3.12)", " (2)", "(2)", " [12]"])
+def test_of_one_close_behind_it_is_said_how_it_is_read(behind):
+    found = told("planar2r", "x", f"x = {X}{behind}")
+    assert found.agrees
+    assert found.remarks == (f"{behind.strip()} behind it is read as the number of an equation, not as a factor",)  # fmt: skip
+
+
 @pytest.mark.parametrize(
     "behind",
     [
-        r" \qquad (3.12)", r"\quad (4)", r"\quad\quad (3-12)", r"\; (3.12)", r"\hfill (3.12)",
+        r" \qquad (3.12)", r"\quad (4)", r"\quad\quad (3-12)", r"\; (3.12)", r" \; (3.12)", r"\hfill (3.12)",
         r" \eqno(3.12)", r" \cdots (5)", r"\tag{3.12}",
     ],
 )  # fmt: skip
@@ -60,9 +67,34 @@ def test_so_it_is_in_latex(behind):
     assert told("planar2r", "x", f"x = {LATEX}{behind}").agrees
 
 
-@pytest.mark.parametrize("front", ["- ", "* ", "• ", "① ", "(b) "])
-def test_the_sign_of_an_item_is_no_minus(front):
+def test_in_a_matrix_no_equation_has_a_number():
+    twice = M.replace(
+        r"2m_2l_1l_2c_2 & m_2l_2^2+m_2l_1l_2c_2", "2m_2l_1l_2c_2 & m_2l_2(l_2+l_1c_2)(2)"
+    )
+    assert twice != M
+    found = told("planar2r", "mass_matrix", f"M = {boxed(twice)}")
+    assert not found.agrees and "factor (2)" in found.causes[0].sentence
+
+
+@pytest.mark.parametrize("front", ["* ", "• ", "① ", "(b) "])
+def test_the_sign_of_an_item_is_none_of_the_formula(front):
     assert told("planar2r", "x", f"{front}x = {X}").agrees
+
+
+def test_a_dash_in_front_is_a_list_s_or_a_minus():
+    for entry, text in (("x", f"- x = {X}"), ("J11", "- J11 = l1*s1 + l2*s12")):
+        with pytest.raises(ExpressionError, match="a dash in front"):
+            told("planar2r", entry, text)
+    assert told("planar2r", "J11", "-J11 = l1*s1 + l2*s12").agrees
+    both = "- g1 = (m1+m2)*l1*g*c1 + m2*l2*g*c12\n- g2 = m2*l2*g*c12"
+    assert told("planar2r", "gravity_torques", both).agrees
+
+
+def test_a_sum_that_goes_on_with_a_minus_keeps_it():
+    inertia = "((m1+m2)*l1^2 + m2*l2^2 + 2*m2*l1*l2*c2)*qdd1 + (m2*l2^2 + m2*l1*l2*c2)*qdd2"
+    lines = f"h = m2*l1*l2*s2*(2*qd1*qd2 + qd2^2)\n{inertia} + (m1+m2)*g*l1*c1 + m2*g*l2*c12\n - h = tau1"
+    assert told("planar2r", "tau1", lines).agrees
+    assert not told("planar2r", "tau1", lines.replace("- h", "+ h")).agrees
 
 
 def test_a_factor_in_parentheses_stays_one():
@@ -114,6 +146,23 @@ def test_matrices_stand_one_below_the_other(whole):
     (cause,) = told("planar2r", "jacobian", text.replace("l2*c12; 0", "l2*s12; 0")).causes
     assert cause.sentence.startswith("J22: s12 should be c12")
     assert not told("planar2r", "jacobian", text.replace("Jv; Jw", "Jw; Jv").replace("Jv, Jw", "Jw, Jv")).agrees  # fmt: skip
+
+
+def test_a_product_of_arrays_entry_by_entry_is_none_of_matrices():
+    given = """M = np.array([[(m1+m2)*l1**2+m2*l2**2+2*m2*l1*l2*c2, m2*l2**2+m2*l1*l2*c2],
+              [m2*l2**2+m2*l1*l2*c2, m2*l2**2]])
+h = np.array([(m1+m2)*g*l1*c1+m2*g*l2*c12-m2*l1*l2*s2*(2*qd1*qd2+qd2**2),
+              m2*g*l2*c12+m2*l1*l2*s2*qd1**2])
+tau = M @ qdd + h"""
+    assert told("planar2r", "inverse_dynamics", given).agrees
+    with pytest.raises(ExpressionError, match="write @"):
+        told("planar2r", "inverse_dynamics", given.replace("M @ qdd", "M * qdd"))
+
+
+def test_a_matrix_may_stand_turned():
+    given = "J = [-l1*s1-l2*s12, -l2*s12; l1*c1+l2*c12, l2*c12];\ntau = J'*[fx; fy]"
+    assert told("planar2r", "statics", given).agrees
+    assert not told("planar2r", "statics", given.replace("J'*", "J*")).agrees
 
 
 def test_entries_of_a_row_may_be_sums_apart_by_blanks():

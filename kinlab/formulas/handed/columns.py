@@ -7,7 +7,9 @@ from collections.abc import Mapping
 
 from kinlab.errors import ExpressionError
 from kinlab.formulas.grids import Grid, cells
+from kinlab.formulas.signs.refusals import refused
 from kinlab.formulas.typed import bare, entry_name, is_latex, is_name, of_one_name, own_name
+from kinlab.host.language import N_
 
 _COLUMN = (
     r"((?:\\left\s*[(\[]\s*)?\\begin\{(?P<kind>[bp]?matrix|array)\}(?:\{[lcr| ]*\})?"
@@ -106,6 +108,10 @@ _RATES = re.compile(
 )
 
 
+_ENTRY_BY_ENTRY = re.compile(r"\]\s*\*\s*\[")
+_OF_NUMPY = re.compile(r"(?:np|numpy)\.|(?<!\w)array\s*\(")
+
+
 def with_matrices(own: Mapping[str, str], text: str, place: str) -> tuple[dict[str, str], str]:
     """What a writer explains without the matrices among it, which stand where they are named.
 
@@ -119,7 +125,7 @@ def with_matrices(own: Mapping[str, str], text: str, place: str) -> tuple[dict[s
         entries of M.
 
     Raises:
-        ExpressionError: a matrix that cannot be read.
+        ExpressionError: a matrix that cannot be read, or a product of arrays entry by entry.
     """
     given = {name: rows for name, formula in own.items() if (rows := cells(formula, place))}
     given = {name: rows for name, rows in given.items() if len(rows) * len(rows[0]) > 1}
@@ -137,6 +143,9 @@ def with_matrices(own: Mapping[str, str], text: str, place: str) -> tuple[dict[s
         right = _NAMED.sub(lambda found: _instead(found, given, typeset), right)
         joints = max(len(row) for matrix in given.values() for row in matrix)
         right = _RATES.sub(lambda found: _as_typed(_rates(found, joints, typeset), typeset), right)
+        if _ENTRY_BY_ENTRY.search(right) and any(map(_OF_NUMPY.search, own.values())):
+            said = N_("* multiplies arrays entry by entry; write @ for a product of matrices")
+            raise refused(place, said)
     whole = f"{left}{sign}{right}"
     return rest, f"${whole}$" if typeset else whole
 

@@ -91,9 +91,8 @@ def as_formula(
     """
     refuse_nested(text, place)
     text = _DOLLARS.sub("$$", text)
-    text = _GAP.sub(
-        lambda gap: "\n" if "\n" in gap[0] else " ", without_numbers(plain_letters(text, place))
-    )
+    text, numbered = without_numbers(plain_letters(text, place), place)
+    text = _GAP.sub(lambda gap: "\n" if "\n" in gap[0] else " ", text)
     text = _OF_STATE.sub(r"\1", text) if text.count("=") > 1 else text
     if holds is not None:
         text = without_clauses(text, place, holds)
@@ -113,4 +112,4 @@ def as_formula(
     text = without_words(text, entry, place)
     text = plain_rates(text)
     text, said = without_constant(without_units(text, entry, place), entry)
-    return of_column(text, entry, place), "; ".join(filter(None, (marks, said))), doubts
+    return of_column(text, entry, place), "; ".join(filter(None, (numbered, marks, said))), doubts

@@ -11,6 +11,8 @@ import re
 from functools import lru_cache
 
 from kinlab.formulas.signs.brackets import closes, outside
+from kinlab.formulas.signs.refusals import refused
+from kinlab.host.language import N_, _
 
 _CHINESE = "\u4e00-\u9fff\u3001"
 _SPACES = r"(?:\s|~|\\[,;:! ]|\\q?quad(?![A-Za-z])){0,20}+"
@@ -28,29 +30,32 @@ _OF_EQUATION = (
 )
 """``3.12``, ``2-7``, ``A.3``, ``4b``: in parentheses behind a formula its number."""
 _APART = (
-    r"\\q?quad(?![A-Za-z])|\\[;:!,]|\\hfill?(?![A-Za-z])|\\[lcd]?dots(?![A-Za-z])"
+    r"\\q?quad(?![A-Za-z])|\\hfill?(?![A-Za-z])|\\[lcd]?dots(?![A-Za-z])"
     r"|…|\.{3}|·{3}|-{2,9}|[—–―]|[,;，；]\s"
 )
 _AHEAD = (
     rf"(?<=[\w)}}\]²³$])(?=\s{{2}}|\s{{0,9}}(?:&\s{{0,9}})?(?:{_APART}))(?:\s|&|{_APART}){{1,40}}+"
 )
 _END = r"(?=[ \t]*(?:\$|\\\\|\n|\Z|\\end\b))"
+_CLOSE_BY = r"(?<=[)}\]²³$])(?:[ \t]?\\[;:!,]|[ \t])?"
 _NUMBERS = (
     re.compile(rf"\s?\\l?eqno\s*(?:\{{[^{{}}]*\}}|\([^()]*\)|\S+){_END}"),
     re.compile(rf"{_AHEAD}(?:[(（\[]\s*{_OF_EQUATION}\s*[)）\]]|[①-⒇]){_END}"),
-    re.compile(
-        rf"(?<=[)}}\]²³$])[ \t]?(?:\(\s*(?:{_OF_EQUATION}|\*{{1,3}}|[ivx]{{1,4}})\s*\)|[①-⒇]){_END}"
-    ),
+    re.compile(rf"{_CLOSE_BY}(?:\(\s*(?:\*{{1,3}}|[ivx]{{1,4}})\s*\)|[①-⒇]){_END}"),
+    re.compile(r"(?<![ \t])[ \t]{0,40}[✓✔☑∎■□]+[ \t]*$"),
+)
+"""Numbers of equations, set apart from these."""
+_MAY_BE_FACTORS = (
+    re.compile(rf"{_CLOSE_BY}\s?\(\s*{_OF_EQUATION}\s*\){_END}"),
     re.compile(rf"(?<=[)}}\]²³$])[ \t]\[\d{{1,3}}\]{_END}"),
     re.compile(
         rf"(?<=\w)[ \t]\(\s*(?:[A-Z]|\d{{1,2}})[.\-–]\d{{1,3}}(?:[.\-–]\d{{1,3}})?[a-z]?\s*\){_END}"
     ),
-    re.compile(
-        r"(?m)^[ \t]*(?:[①-⒇]|\([a-h]\)|[-*•–—])[ \t]+(?=[$\\]{0,3}[A-Za-zτθ][^=\n]{0,20}=)"
-    ),
-    re.compile(r"(?<![ \t])[ \t]{0,40}[✓✔☑∎■□]+[ \t]*$"),
 )
-"""Numbers of equations, and of items; ``q (2)`` is an index."""
+"""The same close behind; ``q (2)`` is an index."""
+_NAME_AHEAD = r"(?=[$\\]{0,3}[A-Za-zτθ][\w{}\\,]{0,20}(?:\([\w,\s]{0,20}\))?\s*=)"
+_OF_ITEM = re.compile(rf"(?m)^[ \t]*(?:[①-⒇]|\([a-h]\)|[*•–—])[ \t]+{_NAME_AHEAD}")
+_DASH = re.compile(rf"[ \t]*-[ \t]+{_NAME_AHEAD}")
 
 _EVERYWHERE = (
     (re.compile(r"\\(?:tag\*?|label)\s*\{[^{}]*\}|\\(?:nonumber|notag)(?![A-Za-z])"), " "),
@@ -93,7 +98,7 @@ _BRACES = ("{", "}")
 def _without_braces(text: str) -> str:
     r"""``\underbrace{X}_{Y}`` as X, unless X is a sum that may be a factor, or has a power."""
     start = 0
-    for _ in range(_MOST):
+    for _turn in range(_MOST):
         found = _BRACE.search(text, start)
         end = closes(text, found.end(), _BRACES) + 1 if found else 0
         if found is None or not end:
@@ -112,11 +117,51 @@ def _without_braces(text: str) -> str:
     return text
 
 
-def without_numbers(text: str) -> str:
-    """The text without the numbers of its equations: ``x = l*c1  (3.12)``."""
+def without_numbers(text: str, place: str) -> tuple[str, str]:
+    """The text without the numbers of its equations, and of items: ``x = l*c1  (3.12)``.
+
+    Args:
+        text: as typed.
+        place: what to put in front of a message.
+
+    Returns:
+        The text, and what is to be said of a number that may have been a factor.
+
+    Raises:
+        ExpressionError: a dash that may be a list's, or a minus.
+    """
+    lines = text.split("\n")
+    if len(lines) > 1 and all(_DASH.match(line) for line in lines if line.strip()):
+        text = "\n".join(_DASH.sub("", line, count=1) for line in lines)
+    elif _DASH.match(text):
+        said = N_("a dash in front: of a list, or a minus? leave it out, or the blank behind it")
+        raise refused(place, said)
+    text = _OF_ITEM.sub("", text)
+    taken: list[str] = []
+
+    def left_out(found: re.Match[str]) -> str:
+        if _is_within(text, found.start()):
+            return found[0]
+        taken.append(found[0].strip(" \t\\;:!,"))
+        return ""
+
     for pattern in _NUMBERS:
-        text = pattern.sub("", text)
-    return text
+        text = pattern.sub(left_out, text)
+    taken.clear()
+    for pattern in _MAY_BE_FACTORS:
+        text = pattern.sub(left_out, text)
+    said = _("{number} behind it is read as the number of an equation, not as a factor")
+    return text, said.format(number=", ".join(taken)) if taken else ""
+
+
+def _is_within(text: str, at: int) -> bool:
+    """Whether a place is between brackets, or in a matrix: there stands no equation."""
+    before = text[:at]
+    depth = sum(before.count(one) for one in "([{") - sum(before.count(one) for one in ")]}")
+    begun, ended = (
+        len(re.findall(rf"\\{x}\{{\w*(?:matrix|array)", before)) for x in ("begin", "end")
+    )
+    return depth > 0 or begun > ended
 
 
 @lru_cache(maxsize=1024)

@@ -168,9 +168,8 @@ def of_mistyped(search: LineSearch) -> list[ProgramRepair]:
             return []
         if any(map(_is_plain, search.singles()[:1])):
             return []  # what one edit explains needs no number beside it
-        begun: list[tuple[Way, LineSearch]] = []
+        begun = [(way, _beside_a_number(search, way)) for way in odd]
         for wide in (False, True):
-            begun = begun or [(way, _beside_a_number(search, way)) for way in odd]
             for way, here in begun:
                 here.wide = wide
                 with changed(search.trial, way):
