@@ -479,10 +479,13 @@ _WHERE = re.compile(
 )
 """What stands between a formula and what is explained behind it."""
 _GOES_ON = re.compile(
-    r"(?<=[-+*/^=(,])\s*\n|\n(?=\s*(?:[-+*/^=),]|(?:\\text\s*\{\s*)?(?:where|with)\b))"
+    r"(?<=\\\\)[ \t]*\n|(?<=[-+*/^=(,])\s*\n|\n(?=\s*(?:[-+*/^=),]|(?:\\text\s*\{\s*)?(?:where|with)\b))"
 )
 _DEFINED = re.compile(r":\s*=|\\coloneqq(?![A-Za-z])")
 _SIGNED = re.compile(r"(?:[&\s]|\\q?quad(?![A-Za-z])|\\[,;:! ])*+[-+*/]")
+_MATRIX = re.compile(r"\[|\\begin|diag")
+_LONG_NAME = re.compile(r"[a-z]{4}|fk")
+_UNENDED = re.compile(r"[-+*/=](?:[&\s]|\\[,;:! ]|\\q?quad){0,9}$")
 _OWN_NAME = re.compile(r"[\\\w{} ]+")
 _NAME = re.compile(r"[A-Za-z]\w*(?:\[[\d,]+\])?")
 
@@ -499,11 +502,17 @@ def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
         entry's name, the one without a name, the one in front of ``where``, or the last one.
     """
     lines, writing = _equations(text), hand([text])
-    lines.sort(key=lambda line: (begins_with(line, entry, writing), "=" not in line))
-    if lines and not begins_with(lines[-1], entry, writing) and "=" in lines[-1]:
-        lines.sort(key=lambda line: not explains_another(line, lines))
+    gives = {
+        line
+        for line in lines
+        if begins_with(line, entry, writing)
+        or (_is_meant(line, entry, writing) and not explains_another(line, lines))
+    }
+    lines.sort(key=lambda line: (line in gives, "=" not in line))
+    if lines and lines[-1] not in gives and "=" in lines[-1]:
+        lines = sorted(lines, key=lambda line: not explains_another(line, lines))
     # what gives the entry before is how the writer came to it: L = K - P
-    own = [line.partition("=") for line in lines[:-1] if not begins_with(line, entry, writing)]
+    own = [line.partition("=") for line in lines[:-1] if line not in gives]
     if not lines[:-1] or any(line.count("=") != 1 for line in lines[:-1]):
         return {}, text
     left = lines[-1].partition("=")[0] if "=" in lines[-1] else ""
@@ -576,7 +585,7 @@ def several(text: str, entry: str) -> dict[str, str]:
 
     Returns:
         Each with the equations that explain the writer's own names; empty where none, or only
-        one, is an entry of the whole.
+        one, is an entry of the whole, and where a line has no name: nobody knows whose it is.
     """
     cut, writing = _equations(text), hand([text])
     lines = [line for line in cut if "=" in line]
@@ -593,17 +602,10 @@ def several(text: str, entry: str) -> dict[str, str]:
                 named[name] = line
             else:
                 own.append(line)
-    if len(named) < 2 or (entry in _ONE_NUMBER and _uses(named, cut)):
+    if len(named) < 2 or len(lines) < len(cut):
         return {}
     dollars = "$" if is_latex(text) else ""
     return {name: f"{dollars}{'; '.join([*own, line])}{dollars}" for name, line in named.items()}
-
-
-def _uses(names: Iterable[str], lines: Iterable[str]) -> bool:
-    """Whether a line without a left side is made of one of the names: it is what is asked for."""
-    bare_names = "|".join(map(re.escape, names))
-    lines = (re.sub(r"[_{}\\]", "", one.translate(BELOW)) for one in lines if "=" not in one)
-    return any(re.search(rf"(?:{bare_names})(?!\d)", one) for one in lines)
 
 
 _STARTS_FORMULA = re.compile(r"^[-(\d.]")
@@ -757,6 +759,25 @@ def begins_with(line: str, entry: str, writing: Hand | None = None) -> bool:
     )
 
 
+def _is_meant(line: str, entry: str, writing: Hand) -> bool:
+    """Whether a line gives an entry that is asked for by its long name: g1 of gravity_torques[0].
+
+    ``g = 9.81`` is no gravity_torques, and Jv a part of the Jacobian.
+    """
+    left, _sign, right = line.partition("=")
+    if not _LONG_NAME.match(entry):
+        return False
+    try:
+        own = _head_and_places(entry_name(left, writing=writing))
+        asked = _head_and_places(entry_name(entry))
+    except ExpressionError:
+        return False
+    sure = (
+        bool(asked[1]) or entry in _ONE_NUMBER or (bool(_MATRIX.search(right)) and own[0] != "jv")
+    )
+    return sure and own[1] == asked[1] and any({own[0], asked[0]} <= group for group in _MEANT)
+
+
 def _equations(text: str) -> list[str]:
     """The text, cut where an equation ends outside of brackets and matrices.
 
@@ -769,7 +790,7 @@ def _equations(text: str) -> list[str]:
         depth = sum(last.count(c) for c in "([{") - sum(last.count(c) for c in ")]}")
         if k % 2 == 0 or depth or last.count("\\begin") != last.count("\\end"):
             lines[-1][-1] += piece
-        elif piece[:2] == "\\\\" and _SIGNED.match(pieces[k + 1]):  # a sum goes on
+        elif _goes_on(last, piece, pieces[k + 1]):
             lines[-1][-1] += " "
         elif piece[0] in "\n;" or piece[:2] == "\\\\":
             lines.append([""])
@@ -780,6 +801,11 @@ def _equations(text: str) -> list[str]:
         first, *behind = [part.strip("& ") for piece in line for part in _WHERE.split(piece)]
         found += [one.rstrip(": ") for one in (*behind, first)]
     return [line for line in found if line]
+
+
+def _goes_on(line: str, end: str, following: str) -> bool:
+    """Whether a sum goes on below: its next sign ends the line, or begins the following one."""
+    return end[0] in "\n\\" and bool(_SIGNED.match(following) or _UNENDED.search(line))
 
 
 _DETERMINANT = re.compile(r"\\det\s*(?:\(?\s*J\s*\)?)?|\|\s*J\s*\|")

@@ -51,6 +51,15 @@ _OF_J = re.compile(
     r"(?:\\right)?\s*[)|]?\s*(?==)"
 )
 _TORQUE = re.compile(r"^(\s*\$*\s*)(?:\\Gamma|Γ|Gamma)_?(\{\d\}|\d|[₁-₉])?\s*(?==)")
+_ROOM = re.compile(
+    r"\\(?:hspace|hskip|mspace|kern)\*?\s*(?:\{[^{}]{0,20}\}|-?[\d.]+\s*(?:pt|em|ex|mm|cm|mu))"
+    r"|\\math(?:rel|bin|ord|open|close)\s*\{\s*(?:\\[hv]?phantom\s*\{[^{}]{0,20}\}\s*)?\}"
+    r"|\\[hv]?phantom\s*\{(?:[^{}]|\{[^{}]{0,9}\}){0,20}\}"
+    r"|\\(?:enspace|enskip|thinspace|negthinspace|nonumber|notag|displaystyle|textstyle|hfill)(?![A-Za-z])"
+    r"|(?<![\w}\]])\{\s*\}(?!\s*[\^_])"
+)
+"""Room and signs that are not seen, of which sums in several lines have some."""
+_UNSEEN_LEFT, _UNSEEN_RIGHT = re.compile(r"\\left\s*\."), re.compile(r"\\right\s*\.")
 _MOST = 60
 
 
@@ -72,12 +81,14 @@ def undressed(text: str, entry: str) -> str:
     text = _STOP.sub(lambda m: m[1] if m[1] in (",", ";") else "", text)
     if "\\" not in text:
         return text
-    text = _COLOUR.sub(" ", text)
+    text = _COLOUR.sub(" ", _ROOM.sub(" ", text))
     text = _without(_BOX, text)
     text = _loosened(text)
     text = _ARROW.sub("", _plain_arrows(text)) if r"\vec" in text or "overright" in text else text
     text = _FONT.sub(r"\\\1{\2}", _SCRIPT.sub(r"\\mathcal", text))
     text = _CASES.sub(r"\\begin{cases}\2\\end{cases}", text)
+    if len(_UNSEEN_LEFT.findall(text)) == len(_UNSEEN_RIGHT.findall(text)):
+        text = _UNSEEN_LEFT.sub(" ", _UNSEEN_RIGHT.sub(" ", text))
     text = _LINES.sub(r"\\\1{align\2}", _AMPERSANDS.sub("&=", text))
     text = _BIG.sub(r"\\\1{bmatrix}", text)
     return _with_fractions(_FRACTION.sub(r"\\frac", text))

@@ -1,0 +1,114 @@
+r"""Sums that go on below: ``g_1 &= a \\ &\quad + b``, in every way in which people set these."""
+
+import itertools
+
+import kinlab as kl
+import pytest
+
+from kinlab.errors import KinlabError
+
+_FIRST = r"(m_1 l_{c1}+m_2 l_1) g \cos q_1"
+_SECOND = r"m_2 g l_{c2}\cos(q_1+q_2)"
+_AROUND = (
+    ("", ""),
+    (r"\begin{aligned}", r"\end{aligned}"),
+    ("$$\\begin{split}\n", "\n\\end{split}$$"),
+)
+_ENDS = (r"\\", "\\\\\n", r"\\[2pt]", "\\nonumber\\\\\n", " \\notag \\\\ \n")
+_BEFORE = (
+    r"&\quad",
+    "&",
+    r"\qquad",
+    r"&\qquad\;{}",
+    r"&\phantom{=}",
+    r"&\hphantom{{}=}",
+    r"&\hspace{1cm}",
+    r"&\mathrel{\phantom{=}}",
+    r"&\!\enspace",
+)
+
+
+def _agrees(quantity: str, text: str) -> bool:
+    return kl.diagnose("planar2r", quantity, text, samples=10).agrees
+
+
+@pytest.mark.parametrize("before", _BEFORE)
+@pytest.mark.parametrize(
+    "sum_of", ["{first} {end} {before} + {second}", "{first} + {end} {before} {second}"]
+)
+def test_a_sum_goes_on_below(before: str, sum_of: str) -> None:
+    judged = []
+    for (opened, closed), end in itertools.product(_AROUND, _ENDS):
+        both = sum_of.format(first=_FIRST, second=_SECOND, end=end, before=before)
+        wrong = sum_of.format(first=_FIRST, second=f"2 {_SECOND}", end=end, before=before)
+        one = f"{opened}g_1 &= {both}{closed}"
+        whole = f"{opened}g_1 &= {both} {end} g_2 &= {_SECOND}{closed}"
+        turned = f"{opened}g_2 &= {_SECOND} {end} g_1 &= {both}{closed}"
+        judged += [_agrees("gravity_torques[0]", one), _agrees("gravity_torques", whole)]
+        judged += [_agrees("gravity_torques", turned)]
+        assert not _agrees("gravity_torques[0]", one.replace(both, wrong))
+        assert not _agrees("gravity_torques", whole.replace(both, wrong))
+    assert all(judged)
+
+
+def test_brackets_that_are_not_seen_close_a_line() -> None:
+    first, second = _MASSES.split(", ")
+    text = (
+        r"g_1 &= g\left[(m_1 l_{c1}+m_2 l_1)\cos q_1 \right. \\ &\quad \left. {} + "
+        r"m_2 l_{c2}\cos(q_1+q_2) \right] \\ g_2 &= "
+    )
+    assert _agrees("gravity_torques", text + _SECOND)
+    assert not _agrees("gravity_torques", text + _FIRST)
+
+
+@pytest.mark.parametrize("between", [r" \\ ", " \\\\\n", "; ", "\n"])
+def test_a_line_without_a_name_is_nobody_s(between: str) -> None:
+    lines = f"g_1 = {_FIRST}+{_SECOND}", f"l_1 {_SECOND}", f"g_2 = {_SECOND}"
+    with pytest.raises(KinlabError):
+        kl.diagnose("planar2r", "gravity_torques", between.join(lines))
+
+
+_P = "(m1*lc1 + m2*l1)*g*cos(q1) + m2*lc2*g*cos(q1+q2)"
+_V = "m1*g*lc1*sin(q1) + m2*g*(l1*sin(q1)+lc2*sin(q1+q2))"
+_MASSES = "I1+I2+m1*lc1^2+m2*(l1^2+lc2^2+2*l1*lc2*cos(q2)), I2+m2*(lc2^2+l1*lc2*cos(q2))"
+
+
+@pytest.mark.parametrize("between", ["\n", "; "])
+@pytest.mark.parametrize(
+    ("quantity", "named", "right"),
+    [
+        ("gravity_torques[0]", "g1", _P),
+        ("gravity_torques[0]", "phi1", _P),
+        ("potential_energy", "V", _V),
+        ("fk[0,3]", "T14", "l1*c1 + l2*c12"),
+        ("fk[0,3]", "p_x", "l1*c1 + l2*c12"),
+        ("com_positions[1,0]", "x_c2", "l1*c1 + lc2*c12"),
+        ("mass_matrix[0,1]", "D12", "I2 + m2*(lc2^2 + l1*lc2*cos(q2))"),
+        ("mass_matrix[0]", "M", ""),
+    ],
+)
+def test_the_line_that_is_asked_for_is_judged(
+    between: str, quantity: str, named: str, right: str
+) -> None:
+    """Whatever stands beside it, and in whatever order."""
+    beside = "w = m1*l1"
+    if named == "M":
+        quantity = "mass_matrix"
+        right = f"[{_MASSES}; I2+m2*(lc2^2+l1*lc2*cos(q2)), I2+m2*lc2^2]"
+        beside = "w = [1, 2; 3, 4]"
+    for lines in ((f"{named} = {right}", beside), (beside, f"{named} = {right}")):
+        assert kl.diagnose("planar2r_rods", quantity, between.join(lines), samples=10).agrees
+    name, formula = beside.split(" = ")
+    for lines in ((f"{named} = {formula}", f"{name} = {right}"), (beside, f"{named} = {formula}")):
+        assert not kl.diagnose("planar2r_rods", quantity, between.join(lines), samples=10).agrees
+
+
+@pytest.mark.parametrize("name", ["phi1", "G1", "w"])
+def test_what_is_explained_behind_may_have_the_name_of_another_quantity(name: str) -> None:
+    first, second = _MASSES.split(", ")
+    text = (
+        f"tau_1 = d11*ddq1 + d12*ddq2 + h*dq2^2 + 2*h*dq1*dq2 + {name}\nd12 = {second}\n"
+        f"d11 = {first}\nh = -m2*l1*lc2*sin(q2)\n{name} = {_P}"
+    )
+    assert kl.diagnose("planar2r_rods", "inverse_dynamics[0]", text).agrees
+    assert not kl.diagnose("planar2r_rods", "inverse_dynamics[0]", text + "*2").agrees
