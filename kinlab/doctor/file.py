@@ -122,9 +122,17 @@ def examine_formulas(
         ExpressionError: a name that means nothing.
     """
     file = as_judged(file, robot)
-    parts = [_examined(part, robot, samples, seed) for part in (file, *file.others)]
+    parts, unknown = [_examined(file, robot, samples, seed)], ""
+    for other in file.others:
+        try:
+            parts.append(_examined(other, robot, samples, seed))
+        except ExpressionError as problem:  # T = T_1 + T_2 = ...
+            unknown = unknown or str(problem).removeprefix(f"{file.path}: ")
     alike = [part for part in parts if len(part) == len(parts[0])]
     told = [_of_chain(list(same)) for same in zip(*alike, strict=True)]
+    if unknown:
+        said = _("a part of the chain of equalities was not judged ({why})").format(why=unknown)
+        told = [replace(one, remarks=(*one.remarks, said)) for one in told]
     told = [_with_remarks(one, file.remarks) for one in told] if file.remarks else told
     return [_judged_with(one, file) for one in told] if file.unread else told
 

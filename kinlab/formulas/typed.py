@@ -479,12 +479,14 @@ _WHERE = re.compile(
 )
 """What stands between a formula and what is explained behind it."""
 _GOES_ON = re.compile(
-    r"(?<=\\\\)[ \t]*\n|(?<=[-+*/^=(,])\s*\n|\n(?=\s*(?:[-+*/^=),]|(?:\\text\s*\{\s*)?(?:where|with)\b))"
+    r"(?<=\\\\)[ \t]*\n|(?<=[-+*/^=(,])\s*\n"
+    r"|\n(?=\s*(?:[-+*/^=),]|(?:\\text\s*\{\s*)?(?:where|with)\b))"
 )
 _DEFINED = re.compile(r":\s*=|\\coloneqq(?![A-Za-z])")
-_SIGNED = re.compile(r"(?:[&\s]|\\q?quad(?![A-Za-z])|\\[,;:! ])*+[-+*/]")
+_SIGNED = re.compile(r"(?:[&\s]|\\q?quad(?![A-Za-z])|\\[,;:! ])*+[-+*/=]")
 _MATRIX = re.compile(r"\[|\\begin|diag")
 _LONG_NAME = re.compile(r"[a-z]{4}|fk")
+_EDGES = re.compile(rf"^(?:[&]|{_SPACES})+|(?:[&]|{_SPACES})+$")
 _UNENDED = re.compile(r"[-+*/=](?:[&\s]|\\[,;:! ]|\\q?quad){0,9}$")
 _OWN_NAME = re.compile(r"[\\\w{} ]+")
 _NAME = re.compile(r"[A-Za-z]\w*(?:\[[\d,]+\])?")
@@ -616,9 +618,13 @@ _BY_DEFINITION = re.compile(
 """A part of a chain of equalities that says what the entry is: a derivative, -y, J^T f, T - V."""
 
 
+_SCRIPT = re.compile(r"\\(?:mathcal|mathrm|mathbf|boldsymbol)\s*\{\s*([A-Za-z])\s*\}")
+
+
 def says_what_it_is(text: str) -> bool:
     """Whether a part of a chain of equalities says what the entry is, and not what it comes to."""
-    return bool(_BY_DEFINITION.search(text.replace("−", "-").strip(" .$")))
+    plain = _SCRIPT.sub(r"\1", text.replace("−", "-")).strip(" .$")
+    return bool(_BY_DEFINITION.search(plain))
 
 
 _EITHER = re.compile(
@@ -798,7 +804,7 @@ def _equations(text: str) -> list[str]:
             lines[-1].append("")
     found = []
     for line in lines:
-        first, *behind = [part.strip("& ") for piece in line for part in _WHERE.split(piece)]
+        first, *behind = [_EDGES.sub("", x) for piece in line for x in _WHERE.split(piece)]
         found += [one.rstrip(": ") for one in (*behind, first)]
     return [line for line in found if line]
 

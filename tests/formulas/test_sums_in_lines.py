@@ -2,9 +2,9 @@ r"""Sums that go on below: ``g_1 &= a \\ &\quad + b``, in every way in which peo
 
 import itertools
 
-import kinlab as kl
 import pytest
 
+import kinlab as kl
 from kinlab.errors import KinlabError
 
 _FIRST = r"(m_1 l_{c1}+m_2 l_1) g \cos q_1"
@@ -52,7 +52,6 @@ def test_a_sum_goes_on_below(before: str, sum_of: str) -> None:
 
 
 def test_brackets_that_are_not_seen_close_a_line() -> None:
-    first, second = _MASSES.split(", ")
     text = (
         r"g_1 &= g\left[(m_1 l_{c1}+m_2 l_1)\cos q_1 \right. \\ &\quad \left. {} + "
         r"m_2 l_{c2}\cos(q_1+q_2) \right] \\ g_2 &= "
@@ -112,3 +111,32 @@ def test_what_is_explained_behind_may_have_the_name_of_another_quantity(name: st
     )
     assert kl.diagnose("planar2r_rods", "inverse_dynamics[0]", text).agrees
     assert not kl.diagnose("planar2r_rods", "inverse_dynamics[0]", text + "*2").agrees
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        r"\[g_1 = {sum} \qquad (7)\]",
+        r"g_1 &= {sum}\,. \qquad (7)",
+        r"g_1 = {sum}. \tag{{3}}",
+        r"\begin{{align*}}{first} + k_1 \cos(q_1+q_2), \quad \text{{where}}\quad k_1 := "
+        r"m_2 g l_{{c2}}\,.\end{{align*}}",
+        r"k_1 &= m_2 g l_{{c2}} and a := l_1 \\ g_1 &= (m_1 l_{{c1}}+m_2 a) g \cos q_1 "
+        r"\\ &\quad + k_1 \cos(q_1+q_2)",
+        r"g_1 &= \mathcal{{A}} + \mathcal{{B}} \\ &= {sum}",
+        "k := m2*g*lc2: g1 := (m1*lc1+m2*l1)*g*cos(q1) + k*cos(q1+q2):",
+        r"A := m_2 l_1 \\ g_1 &= m_1 l_{{c1}} g \cos q_1 +\quad A g \cos q_1 + {second}",
+    ],
+)
+def test_numbers_points_and_definitions_beside_it(text: str) -> None:
+    whole = text.format(sum=f"{_FIRST} + {_SECOND}", first=_FIRST, second=_SECOND)
+    assert _agrees("gravity_torques[0]", whole)
+    assert not _agrees("gravity_torques[0]", whole.replace("l_1", "l_2").replace("m2*l1", "m2*l2"))
+
+
+def test_a_step_with_names_of_its_own_is_said_to_be_none_that_was_judged() -> None:
+    text = rf"g_1 = G_a \cos q_1 + G_b = {_FIRST} + {_SECOND}"
+    found = kl.diagnose("planar2r", "gravity_torques[0]", text)
+    assert found.agrees and "not judged" in " ".join(found.remarks)
+    wrong = kl.diagnose("planar2r", "gravity_torques[0]", text + " + 1")
+    assert not wrong.agrees

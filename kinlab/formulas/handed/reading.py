@@ -66,6 +66,9 @@ _CONSTANT = re.compile(
     re.IGNORECASE,
 )
 _MOVING = re.compile(r"theta|θ|q|(?<![A-Za-z])th|cos|sin|(?<![A-Za-z\\])[cs]_?\{?\d|\\d?dot")
+_DEFINED = re.compile(r"\s*(?::\s?=|\\coloneqq(?![A-Za-z]))(?!=)\s*")
+_MAPLES = re.compile(r":(?=\s*(?:$|\n|[A-Za-z]\w{0,20}(?:\[[\d,\s]{1,5}\])?\s*:=))")
+"""A colon that ends a statement of Maple's."""
 _ON_A_LINE = re.compile(r"\n\s*(?=(?:with|mit)\s)")
 
 
@@ -90,7 +93,7 @@ def as_formula(
         ExpressionError: what can be read in two ways, or a clause that is not so.
     """
     refuse_nested(text, place)
-    text = _DOLLARS.sub("$$", text)
+    text = _defined(_DOLLARS.sub("$$", text))
     text, numbered = without_numbers(plain_letters(text, place), place)
     text = _GAP.sub(lambda gap: "\n" if "\n" in gap[0] else " ", text)
     text = _OF_STATE.sub(r"\1", text) if text.count("=") > 1 else text
@@ -113,3 +116,8 @@ def as_formula(
     text = plain_rates(text)
     text, said = without_constant(without_units(text, entry, place), entry)
     return of_column(text, entry, place), "; ".join(filter(None, (numbered, marks, said))), doubts
+
+
+def _defined(text: str) -> str:
+    """``:=`` as a sign of equality, and the colon that ends such a statement as a semicolon."""
+    return _DEFINED.sub(" = ", _MAPLES.sub(";", text) if ":=" in text else text)

@@ -50,7 +50,7 @@ _BETWEEN = re.compile(
 """A short word that no list has, between others or behind a comma."""
 _BRACKETS = re.compile(r"\(\s*[\0\s,.;:?!'-]*\0[\0\s,.;:?!'-]*\)|\[\s*\0[\0\s]*\]")
 _LABEL = re.compile(
-    r"^\s*(?:(?:[QqAa]?\s?\d{0,2}\s?\(?[a-h]?|\(?[ivx]{1,4})[).:](?![\d*/^])\s*)+(?=\S)"
+    r"^\s*(?:(?:[QqAa]?\s?\d{0,2}\s?\(?[a-h]?|\(?[ivx]{1,4})[).:](?![\d*/^=])\s*)+(?=\S)"
 )
 _SUBJECT = re.compile(r"(?<==)([^=,;]+)[,;]\s*I_?\{?[a-z]{0,2}\d\}?\s*$")
 """Whose moment of inertia a sentence behind a formula is about: ``..., I2 taken at the pivot``."""
@@ -76,7 +76,10 @@ _NAME = re.compile(
     r"|\\?[A-Za-zα-ωΑ-Ω][\w\\{}'₀-₉ ̇̈^,]*(?:\s*\([^()]{0,30}\)|\[[\d,\[\]]+\])?"
     r"|\\(?:det|dot|ddot|mathrm|text|boldsymbol|mathbf)[^=]{1,40})\s*"
 )
-_SIGNS = re.compile(r"[_{}\\\s$]")
+_NEXT_LINE = re.compile(
+    r"\n(?=[^\n=]{1,40}=)|\\\\(?:\[[^\]]*\])?\s*(?=[&\s]{0,9}\\?[A-Za-z][^\n=+*/-]{0,30}=)"
+)
+_SIGNS = re.compile(r"[_{}\\\s$&]")
 
 
 def without_sentences(text: str, entry: str) -> str:
@@ -219,7 +222,7 @@ def _of_entry(pieces: list[str], entry: str) -> list[str]:
     equations = [one for piece in pieces for one in _equations(piece) if _is_equation(one)]
     mine = [one for one in equations if begins_with(_ALIGNED.sub("", one).strip(), entry)]
     formulas = [one for one in pieces if "=" not in one and _OPERATOR.search(one)]
-    if not mine and not formulas:  # by another of its names
+    if not mine:  # by another of its names
         named = [one for one in equations if is_name_of(one.partition("=")[0], entry)]
         named = [one for one in named if not explains_another(one, equations)]
         mine = named if len(named) == 1 else []
@@ -248,7 +251,7 @@ def _equations(piece: str) -> list[str]:
     if _ALIGNED.search(piece):
         return [piece]
     parts = parts_at(piece, ";")
-    return [x for one in parts for x in re.split(r"\n(?=[^\n=]{1,40}=)", one) if x.strip()]
+    return [x for one in parts for x in _NEXT_LINE.split(one) if x.strip()]
 
 
 def _is_equation(text: str) -> bool:

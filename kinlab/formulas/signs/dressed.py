@@ -22,6 +22,13 @@ _FIRST = re.compile(
 _STOP = re.compile(r"(?:\\[,;:! ]|~)+\s*([.,;]?)\s*(?=$|\$|\\end\b|\\\])")
 _LINES = re.compile(r"\\(begin|end)\{(?:eqnarray|flalign|alignat|IEEEeqnarray)(\*?)\}(?:\{\w*\})?")
 _AMPERSANDS = re.compile(r"&\s*=\s*&")
+_COMMAND = re.compile(r"(?<!\\)\\[A-Za-z]")
+_DISPLAY = re.compile(
+    r"(?P<before>\s*(?:\$\$?|\\\[)?\s*)(?P<begin>\\begin\{(?P<name>(?:equation|align|aligned|gather|gathered|"
+    r"multline|split|displaymath)\*?)\})(?P<inside>.*)(?P<end>\\end\{(?P=name)\})"
+    r"(?P<behind>[\s.,;]*(?:\$\$?|\\\])?[\s.,;]*)",
+    re.DOTALL,
+)
 _BIG = re.compile(r"\\(begin|end)\{(?:B|V)matrix\*?\}")
 _CASES = re.compile(
     r"\\left\s*\\(?:\{|lbrace)\s*\\begin\{(array|aligned|matrix|split)\}(?:\{[lcr| ]*\})?(.*?)"
@@ -52,6 +59,7 @@ _OF_J = re.compile(
 )
 _TORQUE = re.compile(r"^(\s*\$*\s*)(?:\\Gamma|Γ|Gamma)_?(\{\d\}|\d|[₁-₉])?\s*(?==)")
 _ROOM = re.compile(
+    r"\\(?:tag\*?|label)\s*\{[^{}]{0,60}\}|"
     r"\\(?:hspace|hskip|mspace|kern)\*?\s*(?:\{[^{}]{0,20}\}|-?[\d.]+\s*(?:pt|em|ex|mm|cm|mu))"
     r"|\\math(?:rel|bin|ord|open|close)\s*\{\s*(?:\\[hv]?phantom\s*\{[^{}]{0,20}\}\s*)?\}"
     r"|\\[hv]?phantom\s*\{(?:[^{}]|\{[^{}]{0,9}\}){0,20}\}"
@@ -78,10 +86,10 @@ def undressed(text: str, entry: str) -> str:
         text = _DETERMINANT.sub(lambda m: _determinant(m[1] or m[2]) or m[0], text)
     text = _FIRST.sub(lambda m: "$" * m[0].count("$"), text)
     text = _with_waves(text)
-    text = _STOP.sub(lambda m: m[1] if m[1] in (",", ";") else "", text)
+    text = _STOP.sub(lambda m: m[1] if m[1] in (",", ";") else "", _ROOM.sub(" ", text))
     if "\\" not in text:
         return text
-    text = _COLOUR.sub(" ", _ROOM.sub(" ", text))
+    text = _COLOUR.sub(" ", text)
     text = _without(_BOX, text)
     text = _loosened(text)
     text = _ARROW.sub("", _plain_arrows(text)) if r"\vec" in text or "overright" in text else text
@@ -90,8 +98,20 @@ def undressed(text: str, entry: str) -> str:
     if len(_UNSEEN_LEFT.findall(text)) == len(_UNSEEN_RIGHT.findall(text)):
         text = _UNSEEN_LEFT.sub(" ", _UNSEEN_RIGHT.sub(" ", text))
     text = _LINES.sub(r"\\\1{align\2}", _AMPERSANDS.sub("&=", text))
-    text = _BIG.sub(r"\\\1{bmatrix}", text)
+    text = _without_display(_BIG.sub(r"\\\1{bmatrix}", text))
     return _with_fractions(_FRACTION.sub(r"\\frac", text))
+
+
+def _without_display(text: str) -> str:
+    """The text without the environments around the whole of it; dollars stay."""
+    for _ in range(_MOST):
+        found = _DISPLAY.fullmatch(text)
+        inside = found["inside"] if found else ""
+        nested = found and inside.count(found["begin"]) != inside.count(found["end"])
+        if found is None or nested or not _COMMAND.search(inside):  # by one it is known as LaTeX
+            break
+        text = f"{found['before']}{inside}{found['behind']}"
+    return text
 
 
 def _without(command: re.Pattern[str], text: str) -> str:

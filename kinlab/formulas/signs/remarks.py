@@ -34,9 +34,10 @@ _APART = (
     r"|…|\.{3}|·{3}|-{2,9}|[—–―]|[,;，；]\s"
 )
 _AHEAD = (
-    rf"(?<=[\w)}}\]²³$])(?=\s{{2}}|\s{{0,9}}(?:&\s{{0,9}})?(?:{_APART}))(?:\s|&|{_APART}){{1,40}}+"
+    rf"(?<=[\w)}}\]²³$.,])"
+    rf"(?=\s{{2}}|\s{{0,9}}(?:&\s{{0,9}})?(?:{_APART}))(?:\s|&|{_APART}){{1,40}}+"
 )
-_END = r"(?=[ \t]*(?:\$|\\\\|\n|\Z|\\end\b))"
+_END = r"(?=[ \t]*(?:\$|\\\\|\\[\])]|\n|\Z|\\end\b))"
 _CLOSE_BY = r"(?<=[)}\]²³$])(?:[ \t]?\\[;:!,]|[ \t])?"
 _NUMBERS = (
     re.compile(rf"\s?\\l?eqno\s*(?:\{{[^{{}}]*\}}|\([^()]*\)|\S+){_END}"),
@@ -55,6 +56,7 @@ _MAY_BE_FACTORS = (
 """The same close behind; ``q (2)`` is an index."""
 _NAME_AHEAD = r"(?=[$\\]{0,3}[A-Za-zτθ][\w{}\\,]{0,20}(?:\([\w,\s]{0,20}\))?\s*=)"
 _OF_ITEM = re.compile(rf"(?m)^[ \t]*(?:[①-⒇]|\([a-h]\)|[*•–—])[ \t]+{_NAME_AHEAD}")
+_DISPLAY = re.compile(r"(?<!\\)\\[\[(\])]")
 _DASH = re.compile(rf"[ \t]*-[ \t]+{_NAME_AHEAD}")
 
 _EVERYWHERE = (
@@ -156,7 +158,7 @@ def without_numbers(text: str, place: str) -> tuple[str, str]:
 
 def _is_within(text: str, at: int) -> bool:
     """Whether a place is between brackets, or in a matrix: there stands no equation."""
-    before = text[:at]
+    before = _DISPLAY.sub("", text[:at])
     depth = sum(before.count(one) for one in "([{") - sum(before.count(one) for one in ")]}")
     begun, ended = (
         len(re.findall(rf"\\{x}\{{\w*(?:matrix|array)", before)) for x in ("begin", "end")
