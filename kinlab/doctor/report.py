@@ -92,7 +92,7 @@ def diagnose(
         judged = examine_formulas(file, arm, whole(samples, "samples", FEWEST), seed_of(seed))
         refuse_unjudged(judged)
         wrong = [one for one in judged if not one.agrees]
-        return _of_all(wrong) if wrong else judged[0]
+        return _of_all(wrong) if wrong else _all_right(judged)
     need_function(function)
     plain, index = split_name(quantity if "[" in quantity else _in_full(quantity, robot))
     case, engine = prepare(robot, plain, index, samples, seed)
@@ -113,6 +113,19 @@ def _of_answers(case: Case, hand: Array, engine: Array, quantity: str, name: str
         return examine(case, hand, engine, quantity, name, {})
     found = examine(case, same[0], engine, quantity, name, {})
     return replace(found, form="unusual", remarks=(*found.remarks, same[1]))
+
+
+def _all_right(judged: list[Diagnosis]) -> Diagnosis:
+    """Entries that are right, judged each for itself, told together: as the least right of them."""
+    first = max(judged, key=lambda one: (bool(one.form), one.error_before))
+    if len(judged) == 1:
+        return first
+    return replace(
+        first,
+        function=", ".join(one.function for one in judged),
+        quantity=split_name(first.quantity)[0],
+        remarks=tuple(dict.fromkeys(said for one in judged for said in one.remarks)),
+    )
 
 
 def _of_all(wrong: list[Diagnosis]) -> Diagnosis:

@@ -36,7 +36,7 @@ from kinlab.formulas.handed.prose import Doubt, left_over
 from kinlab.formulas.handed.reading import as_formula
 from kinlab.formulas.signs.latex import LAMBDA
 from kinlab.formulas.signs.letters import WIDE
-from kinlab.formulas.signs.named import LastJoint, is_craigs_last, is_of_other_frames
+from kinlab.formulas.signs.named import LastJoint, is_another, is_craigs_last
 from kinlab.formulas.signs.refusals import refused
 from kinlab.formulas.text import LENGTH, parse, tidied
 from kinlab.formulas.tree import Node
@@ -164,7 +164,7 @@ def formula_file(
         explained |= own.keys()
         own, entries[key] = with_matrices(own, entries[key], f"{place}: {key}")
         left = entries[key].partition("=")[0]
-        if last is not None and is_of_other_frames(left, key, last):
+        if last is not None and is_another(left, key, last):
             said = N_("the formula begins with {text} =, which is another")
             raise refused(f"{place}: {key}", said, text=left.strip("$& ")[:40])
         if last is not None and is_craigs_last(left, key, last):

@@ -456,3 +456,61 @@ def test_a_slip_in_the_pose_of_a_frame_of_six_joints_is_told_in_the_text(
     robot, entry, text, said
 ) -> None:
     assert said in kl.diagnose(robot, entry, text).sentence
+
+
+_WRIST = "x = l1*c1 + l2*c12"
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "valid for small angles", "in inches", "the torque would be in kgf, instead of newtons", "seen by the camera",
+        "in a left-handed frame", "senza il peso", "sans la gravité", "sin términos de Coriolis", "second link only",
+        "ungefähr", "大约", "not verified yet", "das Doppelte davon", "muss noch mit 2 multipliziert werden",
+        "the sign must be reversed", "falta un término", "manca un termine", "valida solo per q2 piccolo",
+        "valable seulement si q2 = 0", "válido sólo para q1 = 0", "摩擦を無視", "ではなく y である", "roughly",
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("text", ["{formula}, {words}", "{formula}. {words}.", "{formula}  # {words}", "{formula}  // {words}"])
+def test_words_that_deny_in_many_languages_are_refused(text, words):
+    with pytest.raises(ExpressionError):
+        kl.diagnose("planar2r", "x", text.format(formula=_WRIST, words=words))
+
+
+@pytest.mark.parametrize(
+    "words",
+    ["relative joint angles", "No minus sign here", "not in degrees", "assume small angles"],
+)  # fmt: skip
+def test_words_that_look_like_a_denial(words):
+    found = kl.diagnose("planar2r", "x", f"{_WRIST}. {words}.")
+    assert found.agrees
+
+
+@pytest.mark.parametrize(
+    ("quantity", "text"),
+    [
+        ("potential_energy", "Kinetic energy: {V}"), ("potential_energy", "动能为 {V}"),
+        ("gravity_torques[1]", "Mass matrix: g2 = m2*g*l2*c12"), ("gravity_torques[1]", "The Coriolis matrix is g2 = m2*g*l2*c12"),
+        ("jacobian", "{}^2J = {J}"), ("jacobian", "J^T = {J}"), ("jacobian", "J_b = {J}"), ("jacobian", "{}^EJ = {J}"),
+        ("jacobian_tool", "{}^0J = [l1*s2, 0; l1*c2 + l2, l2]"),
+    ],
+)  # fmt: skip
+def test_what_says_that_it_is_another_quantity_is_refused(quantity, text):
+    """Though the formula is right of what is asked for."""
+    text = text.replace("{V}", "V = m1*g*l1*s1 + m2*g*(l1*s1 + l2*s12)")
+    text = text.replace("{J}", "[-l1*s1-l2*s12, -l2*s12; l1*c1+l2*c12, l2*c12]")
+    with pytest.raises(ExpressionError):
+        kl.diagnose("planar2r", quantity, text)
+
+
+def test_the_same_of_what_is_asked_for_is_right():
+    for quantity, text in (
+        ("potential_energy", "Potential energy: V = m1*g*l1*s1 + m2*g*(l1*s1 + l2*s12)"),
+        ("gravity_torques[1]", "By the potential energy, g2 = m2*g*l2*c12"),
+        ("jacobian", "{}^0J = [-l1*s1-l2*s12, -l2*s12; l1*c1+l2*c12, l2*c12]"),
+        ("jacobian_tool", "{}^2J = [l1*s2, 0; l1*c2 + l2, l2]"),
+    ):
+        found = kl.diagnose("planar2r", quantity, text)
+        assert found.agrees
+        if "J" in text:
+            assert found.function.count(",") >= 3  # all that is right is told

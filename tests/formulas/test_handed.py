@@ -344,7 +344,7 @@ def test_a_slip_in_sentences_is_told(text):
     [
         ("x", "At the upright pose $x = l_1$"), ("x", "In the stretched pose: x = l1 + l2"), ("x", "x = l1*c1  # of the elbow"),
         ("x", "The elbow has $x = l_1\\cos q_1$"), ("x", "x coordinate of joint 2: x = l1*c1"), ("x", "x_elbow = l1*c1"),
-        ("x", r"x = l_1 + l_2 \quad \text{for the stretched arm}"), ("x", "With small angles we get $x = l_1 + l_2$"),
+        ("x", r"x = l_1 + l_2 \quad \text{for the stretched arm}"), ("x", "With the arm nearly straight we get $x = l_1 + l_2$"),
         ("x", "x = l1 + l2, stretched out"), ("x", "We look at the stretched arm.\nx = l1 + l2"),
         ("tau2", f"neglecting the motion, tau2 = {G2}"), ("tau2", f"static torque tau2 = {G2}"), ("tau2", f"The gravity term is tau2 = {G2}"),
         ("tau1", f"Torque at joint 2: tau1 = {G2}"), ("V", "Potential energy of link 1: V = m1*g*l1*s1"),
@@ -383,7 +383,7 @@ def test_the_sign_of_the_whole_beside_unread_words_is_not_judged(entry, text):
     ("text", "words"),
     [
         (f"Whatever the pose of the elbow may be: x = {X}", "Whatever the pose of the elbow may be"),
-        (f"x = {X} but this is nonsense", "but this is nonsense"), (f"x = {X}, in inches", "in inches"),
+        (f"x = {X} but this is nonsense", "but this is nonsense"), (f"x = {X}, in cubits", "in cubits"),
         (f"x = {X} (up to a constant)", "up to a constant"),
     ],
 )  # fmt: skip

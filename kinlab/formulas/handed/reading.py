@@ -12,7 +12,7 @@ from kinlab.formulas.handed.letters import plain_letters, siciliano_s_letters, w
 from kinlab.formulas.handed.prose import doubtful
 from kinlab.formulas.handed.rates import plain_rates
 from kinlab.formulas.handed.units import without_units
-from kinlab.formulas.handed.words import without_words
+from kinlab.formulas.handed.words import refuse_comments, without_words
 from kinlab.formulas.signs.dressed import undressed
 from kinlab.formulas.signs.remarks import without_numbers
 from kinlab.formulas.text import refuse_nested
@@ -110,6 +110,7 @@ def as_formula(
         text = text[: constant.start()]
     doubts = doubtful(text, entry)
     text, marks = without_marks(siciliano_s_letters(text))
+    refuse_comments(text, place)
     text = without_code(text, not several and bool(_ALONE.fullmatch(entry)))
     text = undressed(text, entry)
     text = without_words(text, entry, place)

@@ -27,10 +27,12 @@ from kinlab.host.language import N_
 _HEAD = re.compile(r"^([A-Za-z][\w ]{0,20}?)\s*:(?![=:])\s*(?=\S)")
 _OTHERWISE = re.compile(
     r"竖直|铅垂|水平(?!面)|夹角|绝对|相对|量起|角度制|错|有误|应再|不对|不正确|不是|并非|不等于"
-    r"|\b(?:measured|absolute[rn]?|relative|(?<!move )(?<!moves )verti[ck]al\w*"
+    r"|\b(?:measured|absolute[rn]?|relative(?!\s+(?:joint\s+)?angles?\b)"
+    r"|(?<!move )(?<!moves )verti[ck]al\w*"
     r"|horizontal\w*(?!\s+plane)|gemessen|misst"
     r"|senkrechte?n?"
-    r"|waage?recht|grad|degrees?(?!\s+of\s+freedom)|wrong\w*|incorrect\w*|mistak\w*|false"
+    r"|waage?recht|grad|(?<!not )(?<!not in )(?<!no )degrees?(?!\s+of\s+freedom)"
+    r"|wrong\w*|incorrect\w*|mistak\w*|false"
     r"|falsch\w*|per\s+(?:unit|kg|kilogram|met(?:er|re))|pro\s+(?:kg|einheit|meter|masse\w*))\b"
     r"|\b(?:not|n['’]t|never)\s+(?:\w+\s+){0,2}"
     r"(?:correct|right|true|valid|equal\w*|holds?|appl(?:y|ies)|the\s+case)\b"
@@ -73,7 +75,31 @@ _OTHERWISE = re.compile(
     r"|\b(?:rpm|rev/min|u/min|(?:revolutions?|rotations?|turns?)\s+per|umdrehung\w*)\b|转每分|每分钟|转/分"
     r"|\b(?:approximat\w*|näherung\w*|genähert\w*|missing|forgot(?:ten)?|fehl(?:t|en))\b|近似|缺少|漏掉"
     r"|(?<!counter)(?<!counter[ -])(?<!anti)(?<!anti[ -])\bclockwise\b"
-    r"|\bim\s+uhrzeigersinn\b|顺时针",
+    r"|\bim\s+uhrzeigersinn\b|顺时针"
+    r"|(?<!no )(?<!assume )\bsmall[- ](?:angles?|q\b|motions?|rotations?)"
+    r"|\bkleine[nr]?\s+winkel|小角度|微小な?角"
+    r"|\b(?:kgf|kp|lbf?|pounds?|inch(?:es)?|ounces?|feet)\b|g[·*]cm|\binstead\s+of\b|\banstatt\b|而不是"
+    r"|\bcamera\b|\bleft[- ]handed\b|\blinkshändig\w*|左手(?:系|坐标)"
+    r"|\b(?:senza|sans|utan|zonder|sin|sem|bez)\s+(?:\w+['’]?\s*){0,2}"
+    r"(?:gravi|coriolis|pes|frott|attrit|masse?|termi)"
+    r"|\b(?:first|second|third|last|erste[sn]?|zweite[sn]?)\s+(?:link|glied|rod|body|term)\s+"
+    r"(?:only|allein|alone)\b"
+    r"|\bonly\s+the\s+(?:first|second|third|last)\s+(?:link|rod|body|term)\b"
+    r"|\b(?:roughly|ungefähr|etwa|environ|circa|approssimat\w*|aproximad\w*|ongeveer)\b"
+    r"|大约|大概|およそ|約(?=\d)"
+    r"|\bnot\s+(?:yet\s+)?(?:been\s+)?(?:checked|verified|tested|finished|complete)\b"
+    r"|未验证|未検証|\bdas\s+doppelte\b|\bdie\s+hälfte\b|\b(?:la\s+)?moitié\b"
+    r"|\b(?:el|il|le)\s+(?:doble|doppio|double)\b"
+    r"|\bmuss\s+(?:\w+\s+){0,4}(?:multipliziert|geteilt|halbiert|verdoppelt|addiert|ergänzt)\b"
+    r"|\bbe\s+(?:reversed|flipped|switched|swapped)\b"
+    r"|\b(?:falta|faltan|manque|manquent|manca|mancano)\b"
+    r"|無視|無い|足りない|ではなく|(?<!は)ではない|負号が逆"
+    r"|\bv[aá]lid[oae]?s?\s+(?:\w+\s+)?(?:solo|sólo|solamente|soltanto|únicamente|unicamente|apenas)\b"
+    r"|\bvalables?\s+(?:\w+\s+)?(?:seulement|uniquement)\b"
+    r"|\b(?:seulement|uniquement)\s+(?:valables?|pour|si|quand)\b"
+    r"|\b(?:solo|sólo|soltanto|solamente|slechts|alleen)\s+"
+    r"(?:per|si|para|se|quando|cuando|voor|als|v[aá]l\w+)\b"
+    r"|\bvale\s+(?:solo|sólo|soltanto|solamente)\b|のみ(?:有効|成立|成り立つ)|だけ(?:で成立|有効)",
     re.IGNORECASE,
 )
 """Words that say what a name means in another way than the robot's, or that a formula is none."""
@@ -95,7 +121,8 @@ _DENIED = re.compile(
 """The same, in front of a formula alone."""
 _MORE = re.compile(
     r"\b(?:plus|times|(?<!checked )(?<!verified )twice|multiplied|divided|except"
-    r"|minus(?!\s+signs?\s+(?:is|are|comes?|follows?|arises?|results?|stems?|must|has)\b)"
+    r"|(?<!no )(?<!hence )(?<!therefore )(?<!thus )(?<!so )(?<!explains the )"
+    r"minus(?!\s+signs?\s+(?:is|are|comes?|follows?|arises?|results?|stems?|must|has)\b)"
     r"|apart|without|zuzüglich|abzüglich|ohne|außer"
     r"|mal|geteilt)\b|加上|减去|乘以|除以|再加|再乘",
     re.IGNORECASE,
@@ -121,6 +148,66 @@ def without_words(text: str, entry: str, place: str) -> str:
     return without_sentences(text, entry)
 
 
+_COMMENTS = re.compile(
+    r"(?<![:/])//(?!=)([^\n]{1,200})|/\*(.{1,200}?)\*/|\(\*(.{1,200}?)\*\)", re.DOTALL
+)
+
+
+def refuse_comments(text: str, place: str) -> None:
+    """Refuses comments of programs with words that change what a formula claims.
+
+    Args:
+        text: as typed, with its comments.
+        place: what to put in front of a message.
+
+    Raises:
+        ExpressionError: with the words.
+    """
+    for comment in _COMMENTS.finditer(text):
+        inside = next(part for part in comment.groups() if part)
+        found = _OTHERWISE.search(inside) or _MORE.search(inside)
+        if found:
+            raise refused(place, _CHANGED, words=around(inside, *found.span()))
+
+
+_CHANGED = N_("{words!r} beside the formula may change what its names mean; leave it out")
+_NOUN = {
+    "kinetic_energy T K": (
+        r"kinetic\s+energy|kinetische\w*\s+energie|(?:平动|转动)?动能|énergie\s+cinétique"
+    ),
+    "potential_energy V U P": (
+        r"potential\s+energy|potentielle\w*\s+energie|势能|位能|énergie\s+potentielle"
+    ),
+    "mass_matrix M": (
+        r"(?:mass|inertia)\s+matrix|massenmatrix|trägheitsmatrix|(?:质量|惯量|惯性)矩阵"
+    ),
+    "coriolis_matrix C": r"coriolis\s*-?(?:matrix|matrize|term)|(?:科氏|哥氏|科里奥利)\w*矩阵",
+    "gravity_torques g": (
+        r"gravity\s+(?:vector|torques?|term)|gravitationsvektor|重力(?:项|矢量|向量|力矩)"
+    ),
+}
+"""What quantities are called, as far as a sentence says of a formula that it is that."""
+_SAYS = (
+    r"(?:^|[.;。\n])\s*(?:(?:the|our|its|die|das|der|la|l['’])\s+)?(?:{noun})"
+    r"(?:\s+(?:is|are|reads|ist|lautet|est|vaut|becomes)|\s*[:：为是])?(?:\s+given\s+by)?\s*[:：]?\s*$"
+)
+
+
+def _of_another_quantity(text: str, entry: str) -> str:
+    """Words right in front of a formula that say of it that it is another quantity."""
+    head = re.split(r"[\d\[]", entry)[0]
+    front = _NAME_BEHIND.sub("", _FORMULA.split(text)[0]).rstrip("$ \\")
+    for names, noun in _NOUN.items():
+        found = re.search(_SAYS.format(noun=noun), front, re.IGNORECASE)
+        known = any(head in others.split() for others in _NOUN)
+        if found and known and head not in names.split():
+            return found[0].strip(" .;。\n")
+    return ""
+
+
+_NAME_BEHIND = re.compile(r"[$\\]{0,3}[A-Za-z][\w{},]{0,12}(?:\([\w,\s]{1,12}\))?\s*&?$")
+
+
 def _refuse_meanings(text: str, entry: str, place: str) -> None:
     """Refuses words that change what a formula claims whether it is right or not.
 
@@ -131,11 +218,11 @@ def _refuse_meanings(text: str, entry: str, place: str) -> None:
         front, sign, _behind = prose.partition("=")
         found = _OTHERWISE.search(prose) or _MORE.search(prose, len(front) if sign else 0)
         if found:
-            said = N_("{words!r} beside the formula may change what its names mean; leave it out")
-            raise refused(place, said, words=around(prose, *found.span()))
+            raise refused(place, _CHANGED, words=around(prose, *found.span()))
     other = (
         _of_another_coordinate(text, entry) or moment_elsewhere(text) or of_other_axes(text, entry)
     )
+    other = other or _of_another_quantity(text, entry)
     if said_otherwise := other or of_another_part(text, entry):
         said = N_("{words!r} beside the formula is not what it is asked for; leave it out")
         raise refused(place, said, words=said_otherwise)

@@ -170,17 +170,8 @@ class LastJoint(NamedTuple):
     is_tool: bool
 
 
-def is_of_other_frames(left: str, entry: str, last: LastJoint) -> bool:
-    r"""Whether a left side has the frames of another pose than the tool's in the base.
-
-    ``{}^0_2T`` and ``T_2^0`` are right of an arm of two joints, and ``{}^0_3T`` where the tool has
-    a frame of its own; ``{}^1_2T`` is another pose.
-
-    Args:
-        left: as typed.
-        entry: what the formula is asked for; nothing but the tool's pose is looked at.
-        last: of the arm.
-    """
+def _is_of_other_frames(left: str, entry: str, last: LastJoint) -> bool:
+    """Whether a left side has the frames of another pose than the tool's in the base."""
     frames = _frames(_WITH_FRAMES, left, entry)
     return bool(frames) and frames not in ({"0", str(last.number)}, {"0", str(last.number + 1)})
 
@@ -206,3 +197,49 @@ def _frames(written: re.Pattern[str], left: str, entry: str) -> set[str]:
         return set()
     frames = {x for x in found.groups() if x is not None}
     return frames if all(one.isdigit() for one in frames) else set()
+
+
+_TRANSPOSE = re.compile(
+    r"\^\s{0,2}\{?\s{0,2}(?:\\top|\\intercal|T|\\mathrm\s*\{?T\}?)\s{0,2}\}?|\.T$|['’]$"
+)
+_OF_JACOBIAN = re.compile(
+    rf"(?:\{{?\s{{0,2}}\}}?\s{{0,2}}\^{_FRAME}\s{{0,2}}\\?\{{?\s{{0,2}}J"
+    rf"|\\?\{{?J\}}?\s{{0,2}}\^\{{?\(?\s{{0,2}}([0-9BbEeSs])\s{{0,2}}\)?\}}?"
+    r"|\\?\{?J\}?_\{?\s{0,2}((?:body|[bBsS]|spatial))\s{0,2}\}?)\s{0,2}(?:\(|$|_)"
+)
+_ITS_ENTRY = re.compile(r"J(?:\d|$)|jacobian(?!_dot)|planar_jacobian")
+_TOOLS = {"e", "E", "b", "B", "n", "body"}
+
+
+def _is_another_jacobian(left: str, entry: str, last: LastJoint) -> bool:
+    """Whether a left side is the transpose of a Jacobian, or one in other axes."""
+    plain = _FONT.sub("", left.strip("& $"))[:_LONGEST].strip()
+    if not _ITS_ENTRY.match(entry):
+        return False
+    if _TRANSPOSE.search(plain):
+        return True
+    found = _OF_JACOBIAN.match(plain)
+    frame = next((x for x in found.groups() if x), "") if found else ""
+    tool = frame in _TOOLS or frame in (str(last.number), str(last.number + 1))
+    spatial = frame in ("s", "S", "spatial")
+    if entry.startswith("jacobian_tool"):
+        return bool(frame) and not tool
+    if entry.startswith("jacobian_spatial"):
+        return bool(frame) and not (spatial or frame == "0")
+    return bool(frame) and frame != "0"
+
+
+def is_another(left: str, entry: str, last: LastJoint) -> bool:
+    r"""Whether a left side is another pose than the tool's in the base, or another Jacobian.
+
+    ``{}^0_2T`` and ``T_2^0`` are right of an arm of two joints, and ``{}^0_3T`` where the tool has
+    a frame of its own; ``{}^1_2T`` is another pose. ``{}^2J`` is right of the tool's axes alone,
+    and ``J^T`` is no Jacobian.
+
+    Args:
+        left: as typed.
+        entry: what the formula is asked for.
+        last: of the arm.
+    """
+    pose = _is_of_other_frames(left, entry, last)
+    return pose or _is_another_jacobian(left, entry, last)
