@@ -123,11 +123,17 @@ def examine_formulas(
     """
     file = as_judged(file, robot)
     parts, unknown = [_examined(file, robot, samples, seed)], ""
+    right = all(one.agrees for one in parts[0])
     for other in file.others:
         try:
-            parts.append(_examined(other, robot, samples, seed))
+            part = _examined(other, robot, samples, seed)
         except ExpressionError as problem:  # T = T_1 + T_2 = ...
             unknown = unknown or str(problem).removeprefix(f"{file.path}: ")
+            continue
+        if right and _may_mean_another(other, file) and not all(one.agrees for one in part):
+            unknown = unknown or _("its names may be of another point, or another link")
+        else:
+            parts.append(part)
     alike = [part for part in parts if len(part) == len(parts[0])]
     told = [_of_chain(list(same)) for same in zip(*alike, strict=True)]
     if unknown:
@@ -214,6 +220,16 @@ def _with_remarks(found: Diagnosis, remarks: Mapping[str, str]) -> Diagnosis:
     """A diagnosis with what is to be said of how its entries were read."""
     said = dict.fromkeys(remarks[one] for one in found.function.split(", ") if one in remarks)
     return replace(found, remarks=(*found.remarks, *said))
+
+
+_OF_A_POINT = re.compile(r"[IJ](?:_?[A-Za-z]\w{0,3})?|(?:J|omega|w|v|h|r)_?\d?")
+"""A moment of inertia, a velocity, a height: of what point, or of which body, nobody says."""
+
+
+def _may_mean_another(other: FormulaFile, file: FormulaFile) -> bool:
+    """Whether a step has names that mean what its writer says, and says nowhere: J, omega."""
+    names = {name for node in other.formulas.values() for name in tree.names(node)}
+    return any(map(_OF_A_POINT.fullmatch, names - {*file.symbols}))
 
 
 def _of_chain(parts: list[Diagnosis]) -> Diagnosis:

@@ -85,7 +85,7 @@ def diagnose(
     if isinstance(function, str):
         arm = mechanism(robot)
         only = not isinstance(arm, FiveBar) and arm.n == 1 and quantity in VECTORS
-        entry = alone_of(quantity) if only else quantity
+        entry = alone_of(quantity) if only else _only(quantity, arm)
         document = {"robot": arm.name, "formulas": {entry: function}}
         file = of_robot(document, "formula", arm)
         require_whole(as_judged(file, arm), arm)
@@ -154,6 +154,12 @@ def _of_all(wrong: list[Diagnosis]) -> Diagnosis:
         {name: text for one in told for name, text in one.typed.items()},
     )
     return replace(both, causes=(cause,))
+
+
+def _only(quantity: str, arm: Any) -> str:
+    """The matrix of one entry that an arm of one joint has: ``M = ...`` is ``mass_matrix[0,0]``."""
+    one = not isinstance(arm, FiveBar) and arm.n == 1 and quantity.endswith("_matrix[0,0]")
+    return quantity.partition("[")[0] if one else quantity
 
 
 def _in_full(quantity: str, robot: Any) -> str:

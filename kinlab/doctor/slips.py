@@ -383,6 +383,10 @@ def of_entry(
         error = entry.error(slip.values, left)
         if error <= TOLERANCES.formula_agrees:
             good.append(slip.with_error(error))
+    if not good and text is not None:
+        error = entry.error(np.zeros_like(entry.engine), entry.engine)
+        if error <= TOLERANCES.formula_agrees:
+            good.append(terms.nothing(text, entry.engine).with_error(error))
     return good
 
 

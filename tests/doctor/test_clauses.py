@@ -471,7 +471,10 @@ _WRIST = "x = l1*c1 + l2*c12"
         "valable seulement si q2 = 0", "válido sólo para q1 = 0", "摩擦を無視", "ではなく y である", "roughly",
     ],
 )  # fmt: skip
-@pytest.mark.parametrize("text", ["{formula}, {words}", "{formula}. {words}.", "{formula}  # {words}", "{formula}  // {words}"])
+@pytest.mark.parametrize(
+    "text",
+    ["{formula}, {words}", "{formula}. {words}.", "{formula}  # {words}", "{formula}  // {words}"],
+)
 def test_words_that_deny_in_many_languages_are_refused(text, words):
     with pytest.raises(ExpressionError):
         kl.diagnose("planar2r", "x", text.format(formula=_WRIST, words=words))

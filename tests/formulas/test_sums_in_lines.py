@@ -140,3 +140,35 @@ def test_a_step_with_names_of_its_own_is_said_to_be_none_that_was_judged() -> No
     assert found.agrees and "not judged" in " ".join(found.remarks)
     wrong = kl.diagnose("planar2r", "gravity_torques[0]", text + " + 1")
     assert not wrong.agrees
+
+
+@pytest.mark.parametrize(
+    ("robot", "quantity", "text"),
+    [
+        ("planar2r", "gravity_torques", r"g(q) = \begin{cases} g_1 = (m_1+m_2) g l_1 c_1 + m_2 g l_2 c_{12} \\ g_2 = m_2 g l_2 c_{12}\end{cases}"),
+        ("planar2r", "gravity_torques[0]", "g_1 = (2 kg + 1.5 kg) * 9.81 m/s^2 * 0.5 m * cos(q1) + 1.5 kg * 9.81 m/s^2 * 0.4 m * cos(q1+q2)"),
+        ("planar2r", "statics[1]", "tau2 = -l2*s12*fx + l2*c12*fy + mz"),
+        ("stanford", "dh_poses[0]", r"{}^{0}A_1=\begin{pmatrix}\cos\theta_1&0&-\sin\theta_1&0\\ \sin\theta_1&0&\cos\theta_1&0\\ 0&-1&0&0.412\\ 0&0&0&1\end{pmatrix}"),
+        ("single_link", "mass_matrix[0,0]", r"$M = \frac{1}{12}ml^2 + m\left(\frac{l}{2}\right)^2 = \frac13 m l^2$"),
+        ("single_link", "kinetic_energy", r"E_k = \frac12 J\omega^2 = \frac12\cdot\frac{m l^2}{3}\,\dot q^2 = \frac{m l^2\dot q^2}{6}"),
+        ("scara", "fk[1,3]", "Sumando: y = l1*sin(q1) + l2*sin(q1+q2), con los a\u0301ngulos en radianes"),
+        ("planar2r_rods", "mass_matrix[1,1]", "Come visto a lezione, M22 = I2 + m2*lc2^2 (costante)"),
+    ],
+)  # fmt: skip
+def test_other_writings_are_right(robot: str, quantity: str, text: str) -> None:
+    assert kl.diagnose(robot, quantity, text).agrees
+
+
+def test_a_letter_that_is_a_unit_and_a_name_is_refused() -> None:
+    with pytest.raises(KinlabError, match="a unit, or a name"):
+        kl.diagnose("single_link", "gravity_torques[0]", "m * 9.81 m/s^2 * 0.5 m * cos(q)")
+
+
+@pytest.mark.parametrize(
+    ("quantity", "text"),
+    [("mass_matrix_dot[1,1]", "-m2*l1*lc2*s2*qd1"), ("coriolis_matrix[1,1]", "-m2*l1*lc2*s2*qd2")],
+)
+def test_what_should_be_nothing_is_told_so(quantity: str, text: str) -> None:
+    found = kl.diagnose("planar2r_rods", quantity, text)
+    assert f"{text} should be 0" in found.causes[0].sentence
+    assert found.causes[0].kinds == ("extra term",)

@@ -379,16 +379,27 @@ def turned(written: Written) -> Slip:
     """The sign of a whole text, which needs no derivation: of an arm with many joints, too."""
     plain, body = written.text.strip(), written.text.strip().removeprefix("-")
     new = (body if body != plain else f"-{plain}") if _ONE_TERM.fullmatch(body) else f"-({plain})"
-    pieces = {"old": written.told(plain), "new": written.told(new)}
+    return _whole(written, new, "sign", np.empty(0), 1.0)
+
+
+def nothing(written: Written, entry: Array) -> Slip:
+    """Of an entry that is nothing at all: no term of a text belongs there."""
+    return _whole(written, "0", "extra term", np.zeros_like(entry), _OF_NOTHING)
+
+
+def _whole(written: Written, new: str, kind: str, values: Array, cost: float) -> Slip:
+    """Another text in place of a whole one."""
+    pieces = {"old": written.told(written.text.strip()), "new": written.told(new)}
     told = _("{old} should be {new}").format(**pieces)
     said = _("{entry}: {slip} ({kind})").format(
-        entry=shown_entry(written.entry), slip=told, kind=_("sign")
+        entry=shown_entry(written.entry), slip=told, kind=_(kind)
     )
     text = written.restored(new)
     typed = written.typing.corrected(text) if written.typing is not None else ""
-    return Slip(written.entry, ("sign",), said, text, 1.0, np.empty(0), True, typed=typed)
+    return Slip(written.entry, (kind,), said, text, cost, values, True, typed=typed)
 
 
+_OF_NOTHING = 0.6
 _ONE_TERM = re.compile(r"[^-+]*(?:\([^()]*\)[^-+]*)*")
 """A product without a sign in front, whatever stands between its parentheses."""
 

@@ -157,7 +157,7 @@ def alone(quantity: str) -> str:
 # -------- A force or a moment of the tool in a torque
 
 _TORQUE = re.compile(r"tau|Q|torque|t_?\d")
-_SPELT = re.compile(r"([fFnNM])_?([xyz])")
+_SPELT = re.compile(r"([fFnNMm])_?([xyz])")
 _MOVING = re.compile(r"qdd?\d+|m\d+|g")
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 
 from kinlab.formulas.handed.clauses import Holds, without_clauses
 from kinlab.formulas.handed.code import without_code
@@ -62,10 +63,12 @@ _WRENCH = re.compile(
 """The tool's force and moment by their parts, in their order: ``F = [Fx, Fy, Nz]``."""
 _CONSTANT = re.compile(
     r"[,;，；]\s*(?:(?:which|it|das)\s+)?(?:(?:is|ist)\s+)?(?:an?\s+|为|是)?"
-    r"(?:constants?|konstante?|常数|常量)\s*[.。]?\s*$",
+    r"(?:constants?|konstante?|costante|constante|常数|常量)\s*[.。]?\s*$",
     re.IGNORECASE,
 )
 _MOVING = re.compile(r"theta|θ|q|(?<![A-Za-z])th|cos|sin|(?<![A-Za-z\\])[cs]_?\{?\d|\\d?dot")
+_ACCENTED = re.compile("[aeiouAEIOU][\u0300-\u0303\u0308]|[nN]\u0303|[cC]\u0327")
+"""Letters of words whose accent is a sign of its own."""
 _DEFINED = re.compile(r"\s*(?::\s?=|\\coloneqq(?![A-Za-z]))(?!=)\s*")
 _MAPLES = re.compile(r":(?=\s*(?:$|\n|[A-Za-z]\w{0,20}(?:\[[\d,\s]{1,5}\])?\s*:=))")
 """A colon that ends a statement of Maple's."""
@@ -93,6 +96,7 @@ def as_formula(
         ExpressionError: what can be read in two ways, or a clause that is not so.
     """
     refuse_nested(text, place)
+    text = _ACCENTED.sub(lambda letter: unicodedata.normalize("NFC", letter[0]), text)
     text = _defined(_DOLLARS.sub("$$", text))
     text, numbered = without_numbers(plain_letters(text, place), place)
     text = _GAP.sub(lambda gap: "\n" if "\n" in gap[0] else " ", text)

@@ -115,6 +115,7 @@ def without_units(text: str, entry: str, place: str) -> str:
     text = _GIVEN.sub(lambda found: _as_number(found, length), _SYMBOL_OF.sub("", text))
     own = {*_OWN_UNITS.findall(text)}
     text = _CONVERTED.sub(lambda found: _converted(found, "\\" in text, own), text)
+    text = _without_units_of_numbers(text, place)
     if wanted == {(1, 0, 0)} and "\\" not in text:
         every = len(_WORD_M.findall(text))
         if (
@@ -129,6 +130,32 @@ def without_units(text: str, entry: str, place: str) -> str:
             said = N_("the formula is in {unit}; write it in SI units: m, kg, s, rad, N, J")
             raise refused(place, said, unit=unit)
     return _AT_END.sub(lambda found: _behind(found, text, wanted), text)
+
+
+_QUANTITY = re.compile(
+    rf"(?P<number>{_NUMBER})[ ]?(?P<unit>kg(?:[ *·]?m(?:\^2|\*\*2|²))?|m/s(?:\^2|\*\*2|²)"
+    r"|N(?:[ ]?m)?|m|s|rad)(?![\w/^²(])"
+)
+_SURE = re.compile(rf"{_NUMBER}[ ]?(?:kg|m/s(?:\^2|\*\*2|²))(?![\w(])")
+_NUMBER_ALONE = re.compile(rf"=\s*{_NUMBER}[ ]?[a-zA-Z/^*0-9²]{{1,9}}\s*(?:$|[,;\n])")
+_LETTERS_OF_UNITS = re.compile(r"(?<![\w.\\])(?:kg|N|m|s|rad)(?![\w])")
+
+
+def _without_units_of_numbers(text: str, place: str) -> str:
+    """``2 kg * 9.81 m/s^2 * 0.5 m`` as numbers.
+
+    Raises:
+        ExpressionError: a letter that is a unit behind numbers and stands elsewhere, too.
+    """
+    if "\\" in text or not _SURE.search(text) or _NUMBER_ALONE.search(text):
+        return text
+    plain = _QUANTITY.sub(r"\g<number>", text)
+    other = _LETTERS_OF_UNITS.search(plain)
+    units = [one["unit"] for one in _QUANTITY.finditer(text)]
+    if other and other[0] in units:
+        said = N_("{unit}: a unit, or a name? leave the units out")
+        raise refused(place, said, unit=other[0])
+    return plain
 
 
 _WRITTEN_OUT = (

@@ -13,8 +13,8 @@ from importlib import resources
 from typing import Any
 
 CHINESE = "\u4e00-\u9fff"
-LATIN = "A-Za-zÄÖÜäöüßéèš"
-"""Letters of words, for patterns."""
+LATIN = "A-Za-zÀ-ÖÙ-öù-ÿąčćďěęłńňřšśťůžźőű"
+"""Letters of words, for patterns; without those that are signs of mathematics (ø, ż)."""
 BEHIND = "behind"
 """In an entry's place: what is said of the names in a formula."""
 
@@ -57,7 +57,7 @@ def is_program(word: str) -> bool:
 @cache
 def _every() -> frozenset[str]:
     lists = _lists()
-    told = [lists["anywhere"][key] for key in ("english", "german")]
+    told = [lists["anywhere"][key] for key in ("english", "german", "romance")]
     return frozenset(" ".join([*told, *(one["words"] for one in lists["of"])]).split())
 
 

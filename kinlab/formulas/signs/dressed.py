@@ -35,6 +35,10 @@ _CASES = re.compile(
     r"\\end\{\1\}\s*\\right\s*\.",
     re.DOTALL,
 )
+_NAMED_CASES = re.compile(
+    r"^(\s*\$*\s*)\\?[A-Za-z][^=:&]{0,20}[=:]\s*(?=\\begin\{d?cases\}\s*\\?[A-Za-z][^&=]{0,20}=)"
+)
+"""``C = \\begin{cases} C_{11} = ...``"""
 _FRACTION = re.compile(r"\\(?:nicefrac|sfrac|cfrac)(?![A-Za-z])")
 _OVER = re.compile(r"\\over(?![A-Za-z])")
 _ANGLE = r"(?:\\(?:var)?theta|q|th|theta|θ)_?(?:\{\d\}|\d|[₁-₉])"
@@ -95,6 +99,7 @@ def undressed(text: str, entry: str) -> str:
     text = _ARROW.sub("", _plain_arrows(text)) if r"\vec" in text or "overright" in text else text
     text = _FONT.sub(r"\\\1{\2}", _SCRIPT.sub(r"\\mathcal", text))
     text = _CASES.sub(r"\\begin{cases}\2\\end{cases}", text)
+    text = _NAMED_CASES.sub(r"\1", text)
     if len(_UNSEEN_LEFT.findall(text)) == len(_UNSEEN_RIGHT.findall(text)):
         text = _UNSEEN_LEFT.sub(" ", _UNSEEN_RIGHT.sub(" ", text))
     text = _LINES.sub(r"\\\1{align\2}", _AMPERSANDS.sub("&=", text))
