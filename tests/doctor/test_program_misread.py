@@ -324,3 +324,29 @@ def f(q):
 def test_a_tensor_s_way_to_another_point_is_found_where_its_parts_stand_in_other_lines(tmp_path):
     slip = "izz]) + m * c @ c.T", "izz])"
     told_in_its_line("ur10", "mass_matrix", COMPOSITE, *slip, tmp_path / "composite.py")
+
+
+LIFTS = """
+import numpy as np
+
+W = 9.81*np.array([7.0, 5.0, 1.2, 0.4])
+ROWS = [(0.325, 0.0, 0.387), (0.275, np.pi, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)]
+CENTRES = [(-0.16, 0, 0.02), (-0.13, 0.005, -0.03), (0, 0, -0.05), (0.01, 0, -0.01)]
+
+def f(q):
+    T, joints, out = np.eye(4), [], np.zeros(4)
+    for k, (a, al, d) in enumerate(ROWS):
+        th, d = (0.0, q[k]) if k == 2 else (q[k], d)
+        joints.append((T[:3, 2].copy(), T[:3, 3].copy(), k == 2))
+        c, s, ca, sa = np.cos(th), np.sin(th), np.cos(al), np.sin(al)
+        T = T @ np.array([[c, -s*ca, s*sa, a*c], [s, c*ca, -c*sa, a*s], [0, sa, ca, d], [0, 0, 0, 1]])
+        pc = T[:3, :3] @ CENTRES[k] + T[:3, 3]
+        for j, (z, o, slides) in enumerate(joints):
+            lift = z[2] if slides else np.cross(z, pc - o)[2]
+            out[j] += W[k]*lift
+    return out
+"""
+
+
+def test_a_branch_that_is_nothing():
+    told_in_its_line("scara", "gravity_torques", LIFTS, "lift = z[2] if", "lift = 0.0 if")

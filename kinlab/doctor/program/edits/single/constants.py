@@ -23,6 +23,8 @@ _RODS = 1.02
 """Cost of all moments of a row about the other point."""
 _RATIO, _SQUARED = 5, 1.1
 """A whole number from which on it may be a ratio of gears, and cost of its square for it."""
+_OF_A_BRANCH, _KEYS = 1.1, 2
+"""Cost of something for nothing in a branch, and indices of the other one that are looked at."""
 _ANGLE_FOR_ONE = 1.05
 """Cost of the angle for a 1 in front of its sine: ``th - sin(th)``."""
 
@@ -36,6 +38,19 @@ def _angle_beside(here: Here) -> ast.expr | None:
     if not isinstance(call, ast.Call) or called(call) != "sin" or len(call.args) != 1:
         return None
     return call.args[0] if isinstance(call.args[0], ast.Name) else None
+
+
+def _as_in_the_other_branch(here: Here, scope: Scope) -> Iterator[ast.expr]:
+    """What a branch may be that is nothing: a name, or a vector's entry as the other branch has."""
+    parent = here.parent
+    assert isinstance(parent, ast.IfExp)
+    other = parent.orelse if here.field == "body" else parent.body
+    for _text, node in scope.simple(()):
+        yield node
+    keys = [x.slice for x in nodes(other) if isinstance(x, ast.Subscript)]
+    for key in [x for x in keys if isinstance(x, ast.Constant)][:_KEYS]:
+        for _text, node in scope.simple((3,)):
+            yield ast.Subscript(node, key, ast.Load())
 
 
 def of_rods(here: Here) -> Iterator[ProgramEdit]:
@@ -78,6 +93,9 @@ def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
         yield here.within(here.node, "value", OF_RODS[value], "number", 1.03)
     if given is not None and called(given) == "append" and value in (0, 1):
         yield here.within(here.node, "value", type(value)(1 - value), "number", 1.05)
+    if value == 0 and isinstance(here.parent, ast.IfExp) and here.field in ("body", "orelse"):
+        for new in _as_in_the_other_branch(here, scope):
+            yield here.instead(new, "name", _OF_A_BRANCH)
     if value == 1 and (angle := _angle_beside(here)) is not None:
         yield here.instead(angle, "name", _ANGLE_FOR_ONE)
     for factor in (2, 0.5, 3, 1 / 3, 4, 0.25):
