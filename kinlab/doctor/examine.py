@@ -217,6 +217,7 @@ def _explained(case: Case, engine: Array, written: dict[str, Written], worst: fl
     """
     told = _told(case, engine, written)
     found = _possible(case, engine, written, worst, told)
+    found = [_with_formula(one, told[0]) for one in found[0]], *found[1:]
     doubtful = [one for one in found[0] if not any(one is known for known in told[0])]
     other = for_another_arm(case, engine, written) if doubtful else None
     if other is None:
@@ -227,6 +228,13 @@ def _explained(case: Case, engine: Array, written: dict[str, Written], worst: fl
     said = {one.sentence for one in again}
     kept = [x for x in found[0] if x.sentence in said or not any(x is one for one in doubtful)]
     return kept or told[0], *found[1:]
+
+
+def _with_formula(cause: Cause, slips: list[Cause]) -> Cause:
+    """A way of reading the whole with the right formula, where slips that come to it are known."""
+    if cause.corrected or not slips or not slips[0].corrected:
+        return cause
+    return replace(cause, corrected=slips[0].corrected, typed=slips[0].typed)
 
 
 Told = tuple[list[Cause], tuple[str, ...]]

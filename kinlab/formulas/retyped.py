@@ -160,7 +160,7 @@ class Typing:
         told = [one for i, j, k, m in plain for one in _shares_apart(i, j, new[k:m])]
         whole = [(i, j, new[k:m]) for i, j, k, m in _whole(plain, old, new)]
         ways = [*((told, deep) for deep in range(_DEEP)), (whole, 0)]
-        if r"\frac" in self.typed:
+        if self._latex:
             shares = sorted((_in_front(old, change) for change in told), key=lambda c: c[:2])
             ways = [*((shares, k) for k in range(_DEEP)), *ways] if shares != told else ways
         for changes, deep in ways:
@@ -295,11 +295,12 @@ class Typing:
             macro = self._latex and not _PLAIN_WAVE.search(self.typed)
             return rf"\{name}" if macro else f"{self._prefix}{name}"
         head, digits = re.fullmatch(r"(.*?)(\d*)", name).groups()  # type: ignore[union-attr]
-        for like, shown in known.items():
-            found = re.fullmatch(r"(.*?)_?(\d+)", like)
+        numbered = [(re.fullmatch(r"(.*?)_?(\d+)", like), x) for like, x in known.items()]
+        for found, shown in numbered:
             wave = found and {found[1], head} == {"s", "c"} and found[2] == digits
             if found and wave and shown.count(found[1]) == 1:  # c_12 where he has s_12
                 return shown.replace(found[1], head)
+        for found, shown in numbered:
             if not found or not digits or found[1] != head:
                 continue
             if (zero := f"[{int(found[2]) - 1}]") in shown:

@@ -111,7 +111,7 @@ _WORST = "Thetad"
 """The largest rate of a five-bar's cranks, as note 003 writes it."""
 _PI, _PARTS = Fraction(repr(math.pi)), 12
 """Pi as it is read, and into how many parts of it a number may fall."""
-_JOINT = re.compile(r"(d{0,2})(theta|th|q)(d{1,2}(?![a-z])|_?dot|_?ddot)?_?([1-9]\d?)")
+_JOINT = re.compile(r"(d{0,2})(theta|th|q)(d{1,2}(?![a-z])|_?dot|_?ddot)?_?([1-9]\d?)?")
 _NAMED = {
     "asin": r"\arcsin",
     "acos": r"\arccos",
@@ -173,7 +173,7 @@ def symbol(name: str) -> str:
         dots = max(len(before), (after or "").replace("dot", "d").strip("_").count("d"))
         base = "q" if letter == "q" else r"\theta"
         dotted = {0: base, 1: rf"\dot{{{base}}}", 2: rf"\ddot{{{base}}}"}[dots]
-        return f"{dotted}_{{{index}}}"
+        return f"{dotted}_{{{index}}}" if index else dotted
     if name.startswith(_WORST):
         return rf"\dot{{\Theta}}_{{{name.removeprefix(_WORST).replace('_', '')}}}"
     if name in ("det", "det J"):

@@ -7,6 +7,7 @@ import re
 
 import pytest
 
+import kinlab as kl
 from kinlab.doctor.report import of_document
 
 LINES = [
@@ -105,3 +106,22 @@ def test_corrected_lines_are_the_writers_and_right():
 @pytest.mark.campaign
 def test_three_hundred_corrected_lines():
     assert corrected_lines(41, 300) == []
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "typed", "correct", "said"),
+    [
+        ("spatial3r", "fk[1,3]", "l_1 s_1 + l_2 s_{12} + l_3 c_{12} s_3", "l_1 s_1 + l_2 s_{12} + l_3 s_{12} c_3", "s_3 should be c_3"),
+        ("single_link", "inverse_dynamics[0]", r"\frac13 m l^2\ddot\theta + \frac12 m g l\sin\theta", r"\frac13 m l^2\ddot\theta + \frac12 m g l\cos\theta", r"\sin\theta should be \cos\theta"),
+        ("single_link", "inverse_dynamics[0]", r"(I + m l_c^2)\ddot\theta + m g l\cos\theta, where $l_c = l/2$ and $I=\frac{1}{12}ml^2$", r"(I + m l_c^2)\ddot\theta + m g l_c\cos\theta", "l should be l_c"),
+        ("single_link", "inverse_dynamics[0]", r"I\ddot\theta + m g l\cos\theta, where $I=\frac13 ml^2$", r"I\ddot\theta + \frac{1}{2} m g l\cos\theta", "(factor)"),
+        ("planar2r_rods", "christoffel[0,0,1]", "-2*m2*l1*lc2*sin(q2)", "-m2*l1*lc2*sin(q2)", "the factor 2 does not belong"),
+        ("planar2r_rods", "gravity_torques[0]", r"(m_1 l_1 + m_2 l_1) g \cos q_1 + m_2 g l_2 \cos(q_1+q_2)", r"(m_1 l_{c1} + m_2 l_1) g \cos q_1 + m_2 g l_{c2} \cos(q_1+q_2)", "far end"),
+        ("planar2r_rods", "lagrangian", r"\frac{1}{6}m_1 l_1^2\dot q_1^2 + \frac12 m_2(l_1^2\dot q_1^2 + \frac{1}{3} l_2^2(\dot q_1+\dot q_2)^2 + l_1 l_2\cos q_2\,\dot q_1(\dot q_1+\dot q_2)) - \frac12 m_1 g l_1\sin q_1 - m_2 g(l_1\sin q_1 + l_2\sin(q_1+q_2))", r"\frac{1}{6}m_1 l_1^2\dot q_1^2 + \frac12 m_2(l_1^2\dot q_1^2 + \frac{1}{3} l_2^2(\dot q_1+\dot q_2)^2 + l_1 l_2\cos q_2\,\dot q_1(\dot q_1+\dot q_2)) - \frac12 m_1 g l_1\sin q_1 - m_2 g(l_1\sin q_1 + \frac{1}{2} l_2\sin(q_1+q_2))", "(factor)"),
+    ],
+)  # fmt: skip
+def test_a_line_keeps_its_writer_s_names(robot, entry, typed, correct, said):
+    found = kl.diagnose(robot, entry, typed)
+    (shown,) = found.causes[0].shown.values()
+    assert re.sub(r"\s", "", shown) == re.sub(r"\s", "", correct)
+    assert said in found.causes[0].sentence

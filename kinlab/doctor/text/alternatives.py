@@ -146,7 +146,8 @@ def _name(line: Line, place: Place, name: str) -> None:
         if word != name:
             near = _letters(word) == _letters(name)
             cost = 1.2 if near else 1.4 if word[0].lower() == name[0].lower() else 1.8
-            if word[-1] == name[-1] and {_letters(word), _letters(name)} in _LENGTHS:
+            same = word[-1] == name[-1] or not (word[-1].isdigit() or name[-1].isdigit())
+            if same and {_letters(word), _letters(name)} in _LENGTHS:
                 cost = 1.3 if _beside_a_length(line, place) else 1.1
                 cost = 1.4 if _halves_lengths(line) and word not in words_in(line.source) else cost
             line.instead(place, word, value, "index" if near else "parameter", cost)
@@ -187,7 +188,10 @@ def _node(line: Line, place: Place, node: Node, kind: str, cost: float) -> None:
 
 def _number(line: Line, place: Place) -> None:
     decimal = "." in line.segment(place)
-    idle = place.above is not None and is_product(place.above.node)
+    above = place.above
+    if above is not None and isinstance(above.node, ast.UnaryOp):  # the 2 of -2*m2
+        above = above.above
+    idle = above is not None and is_product(above.node)
     for shown, size in NUMBERS.items():
         shown = "0.25" if decimal and size == 0.25 else shown
         if size != float(line.segment(place)) and not (size == 1.0 and idle):
@@ -292,7 +296,8 @@ def _fitting(line: Line, place: Place) -> float:
 def _call(line: Line, place: Place, node: ast.Call) -> None:
     name = node.func.id if isinstance(node.func, ast.Name) else ""
     if name in ("sin", "cos", "tan"):
-        _wave(line, place, tree.call(name, line.meant(ast.unparse(node.args[0]))))
+        argument = line.siblings[id(place)][0] if name != "tan" else None
+        _wave(line, place, tree.call(name, line.meant(ast.unparse(node.args[0]))), argument)
     elif name == "sqrt":
         root = line.siblings[id(place)][0]
         line.instead(place, f"({line.segment(root)})", root.value, "power", 1.3)
@@ -302,10 +307,14 @@ def _call(line: Line, place: Place, node: ast.Call) -> None:
         line.instead(place, turned, np.arctan2(x.value, y.value), "argument", 1.2)
 
 
-def _wave(line: Line, place: Place, wave: Node) -> None:
+def _wave(line: Line, place: Place, wave: Node, typed: Place | None = None) -> None:
     other = {"sin": "cos", "cos": "sin", "tan": "sin"}[wave.op]
     argument = wave.args[0]
-    _node(line, place, tree.call(other, argument), "sin/cos", 1.0)
+    if typed is None:
+        _node(line, place, tree.call(other, argument), "sin/cos", 1.0)
+    else:  # of the angle as it is typed
+        value = np.cos(typed.value) if other == "cos" else np.sin(typed.value)
+        line.instead(place, f"{other}({line.segment(typed)})", value, "sin/cos", 1.0)
     minus = tree.mul(tree.num(-1), tree.call(other, argument))
     _node(line, place, minus, "sin/cos", 1.7)
     for angle in (*line.names.angles, *_beside(line, argument)):
@@ -402,6 +411,16 @@ def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
         again = plain and re.search(rf"/\s*\(?{re.escape(factor)}\b", line.segment(kept))
         cost = _UNDONE if again else 1.3
         line.edit(place, kept.value, span, kind, cost, told, pieces | {"factor": factor})
+    minus = left.node
+    if isinstance(minus, ast.UnaryOp) and isinstance(minus.operand, ast.Constant):
+        inner = minus.operand
+        factor = line.source[inner.col_offset : inner.end_col_offset]
+        span = (inner.col_offset, right.span[0] if sign == "*" else at + 1, "")
+        told_of = pieces | {"factor": factor}
+        line.edit(place, -right.value, span, "factor", _BEHIND_A_MINUS, told, told_of)
+
+
+_BEHIND_A_MINUS = 1.25
 
 
 def _plus_for_times(line: Line, place: Place, at: int) -> None:
@@ -646,19 +665,36 @@ def _as_term(line: Line, place: Place) -> None:
         return
     inside = line.segment(place)
     there = [_factors(line, term) for term in re.split(r"[-+]", inside)]
+    rates = {_rates(one) for one in there}
     told, end = N_("the term {term} is missing in {sum}"), place.span[1]
     pieces = [*line.pieces]
     values = np.array([np.broadcast_to(x, (line.count,)) for x in line.pieces.values()])
 
     def change(k: int) -> Change:
         piece, (sign, near) = pieces[k // 2], (("+", 1.12), ("-", 1.6))[k % 2]
-        twice = 0.4 * (_factors(line, piece) in there)
+        own = _factors(line, piece)
+        twice = 0.4 * (own in there) + _OTHER_RATES * (_rates(own) not in rates)
         cost = near + _FACTOR_MORE * piece.count("*") + twice + _OF_A_PRODUCT * (not chain)
         shown = {"term": piece if sign == "+" else f"-{piece}", "sum": f"({inside})"}
         typed = f"{line.gap}{sign}{line.gap}{piece}"
         return Change(end, end, typed, "missing term", cost, told, (), shown)
 
     line.put_terms(place, np.stack([values, -values], axis=1).reshape(-1, line.count), change)
+
+
+_OTHER_RATES = 0.3
+"""Cost of a term in a sum whose terms have other rates: of gravity among velocities' squares."""
+
+
+def _rates(factors: list[str]) -> tuple[int, int]:
+    """How many velocities and accelerations stand in a product."""
+    count = [0, 0]
+    for factor in factors:
+        name, _power, exponent = factor.partition("**")
+        found = _MOTION.fullmatch(str(canonical(name).value))
+        if found and found[1] != "q":
+            count[found[1] == "qdd"] += int(exponent or 1)
+    return count[0], count[1]
 
 
 def _in_brackets(line: Line, place: Place) -> bool:
