@@ -350,3 +350,58 @@ def f(q):
 
 def test_a_branch_that_is_nothing():
     told_in_its_line("scara", "gravity_torques", LIFTS, "lift = z[2] if", "lift = 0.0 if")
+
+
+NODES = """
+import numpy as np
+
+def f(q, v):
+    L, mass = 0.6, 2.5
+    nodes = 0.5*L*(1 + np.array([-1, 1])/np.sqrt(3))
+    dm = mass/2
+    T = sum(0.5*dm*(s*v[0])**2 for s in nodes)
+    V = sum(dm*9.81*s*np.sin(q[0]) for s in nodes)
+    return T - V
+"""
+
+
+def test_a_root_that_is_lost():
+    told_in_its_line("single_link", "lagrangian", NODES, "/np.sqrt(3)", "/3")
+
+
+def test_three_edits_of_an_arm_with_two_terms_are_no_proof():
+    """Of what no edit undoes nothing is told."""
+    found, _good = asked(
+        with_slips(NODES, [("/np.sqrt(3)", "/np.log(3)")]), "single_link", "lagrangian"
+    )
+    assert not found.agrees and all(len(cause.kinds) < 3 for cause in found.causes)
+
+
+BELOW = """
+import numpy as np
+
+DH = np.array([[0, 0.089159, 1], [-0.425, 0, 0], [-0.39225, 0, 0], [0, 0.10915, 1], [0, 0.09465, -1], [0, 0.0823, 0]])
+MASS = [3.7, 8.393, 2.275, 1.219, 1.219, 0.1879]
+CG = [[0, 0, 0], [0.145, 0, 0.13585], [0.14225, 0, 0.01615], [0, -0.093, 0], [0, 0.09465, 0], [0, 0, -0.0823]]
+
+def f(q):
+    def below(i, R, o):
+        if i == 6:
+            return 0.0, np.zeros(3)
+        a, d, k = DH[i]
+        c, s = np.cos(q[i]), np.sin(q[i])
+        ca, sa = (1, 0) if k == 0 else (0, k)
+        o2 = o + R @ [a*c, a*s, d]
+        R2 = R @ np.array([[c, -s*ca, s*sa], [s, c*ca, -c*sa], [0, sa, ca]])
+        m, S = below(i + 1, R2, o2)
+        m, S = m + MASS[i], S + MASS[i]*(o2 + R2 @ CG[i])
+        tau[i] = 9.81*np.cross(R[:, 2], S - m*o)[2]
+        return m, S
+    tau = np.zeros(6)
+    below(0, np.diag([-1.0, -1.0, 1.0]), np.zeros(3))
+    return tau
+"""
+
+
+def test_an_origin_that_is_left_out_of_what_is_weighed():
+    told_in_its_line("ur5", "gravity_torques", BELOW, "*(o2 + R2 @ CG[i])", "*(R2 @ CG[i])")

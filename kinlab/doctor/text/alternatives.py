@@ -315,8 +315,9 @@ def _wave(line: Line, place: Place, wave: Node, typed: Place | None = None) -> N
     else:  # of the angle as it is typed
         value = np.cos(typed.value) if other == "cos" else np.sin(typed.value)
         line.instead(place, f"{other}({line.segment(typed)})", value, "sin/cos", 1.0)
-    minus = tree.mul(tree.num(-1), tree.call(other, argument))
-    _node(line, place, minus, "sin/cos", 1.7)
+        line.instead(place, f"-{other}({line.segment(typed)})", -value, "sin/cos", 1.7)
+    if typed is None:
+        _node(line, place, tree.mul(tree.num(-1), tree.call(other, argument)), "sin/cos", 1.7)
     for angle in (*line.names.angles, *_beside(line, argument)):
         if angle != argument and not (_is_turned(angle) and not _is_turned(argument)):
             _node(line, place, tree.call(wave.op, angle), "argument", 1.2)
@@ -358,7 +359,8 @@ def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
         shown = {"old": f"{sign} {second}", "new": f"{other} {second}"}
         turned = left.value - right.value if plus else left.value + right.value
         told = N_("{old} should be {new}")
-        line.edit(place, turned, (at, at + 1, other), "sign", 1.0, told, shown)
+        undone = plus and first.rpartition("+")[2].strip() == second  # a - a is nobody's
+        line.edit(place, turned, (at, at + 1, other), "sign", 1.0 + undone, told, shown)
         told, term = N_("the term {term} does not belong there"), second if plus else f"-{second}"
         line.edit(place, left.value, (at, end, ""), "extra term", 1.1, told, {"term": term})
         alone = right.value if plus else -right.value

@@ -183,7 +183,9 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         given = isinstance(parent, ast.Call) and called(parent) in scope.functions
         if (entry or given) and isinstance(node, ast.Name | ast.Subscript):
             yield from _quarters(here, scope)
-    if listed or summand or argument or product:
+    rotated = isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult)
+    weighed = rotated and isinstance(op, ast.Mult) and len(shape) == 1  # m*(R @ c)
+    if listed or summand or argument or product or weighed:
         yield from _terms(here, scope, shape, whole or here.field == "elt")
 
 
@@ -571,7 +573,7 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
     turned = turned and here.field == "right" and len(shape) == 1
     if shape == ():
         across = (scope.addends.get(one, set()) for one in _of_the_other_axis(stem))
-        yield from _turned_terms(here, scope, siblings.union(*across if whole else ()))
+        yield from _rotatedterms(here, scope, siblings.union(*across if whole else ()))
         yield from _terms_of_others(here, scope, siblings)
     for text, piece in scope.pieces_here(shape).items():
         named = isinstance(piece, ast.Name | ast.Subscript)
@@ -609,7 +611,7 @@ def _of_one_joint(one: ast.expr, other: ast.expr) -> bool:
     return ast.dump(one.slice) == ast.dump(other.slice)
 
 
-def _turned_terms(here: Here, scope: Scope, siblings: set[str]) -> Iterator[ProgramEdit]:
+def _rotatedterms(here: Here, scope: Scope, siblings: set[str]) -> Iterator[ProgramEdit]:
     """What stands in the line beside, with cosines for sines: of x what is there of y."""
     own = {text_of(one) for one in summands(here.node)}
     for text in sorted(siblings):

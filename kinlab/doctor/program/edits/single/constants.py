@@ -23,6 +23,8 @@ _RODS = 1.02
 """Cost of all moments of a row about the other point."""
 _RATIO, _SQUARED = 5, 1.1
 """A whole number from which on it may be a ratio of gears, and cost of its square for it."""
+_ROOTS, _OF_A_ROOT = (2, 3, 5), 1.1
+"""Numbers that may be lost roots, and cost of one."""
 _OF_A_BRANCH, _KEYS = 1.1, 2
 """Cost of something for nothing in a branch, and indices of the other one that are looked at."""
 _ANGLE_FOR_ONE = 1.05
@@ -98,6 +100,9 @@ def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
             yield here.instead(new, "name", _OF_A_BRANCH)
     if value == 1 and (angle := _angle_beside(here)) is not None:
         yield here.instead(angle, "name", _ANGLE_FOR_ONE)
+    if value in _ROOTS and scope.has_numpy and isinstance(here.parent, ast.BinOp):
+        root = ast.Attribute(ast.Name("np", ast.Load()), "sqrt", ast.Load())
+        yield here.instead(ast.Call(root, [number(value)], []), "power", _OF_A_ROOT)
     for factor in (2, 0.5, 3, 1 / 3, 4, 0.25):
         new = value * factor
         new = int(new) if new == int(new) else new
