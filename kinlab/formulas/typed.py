@@ -748,13 +748,10 @@ def named_in(text: str) -> list[str]:
 def begins_with(line: str, entry: str, writing: Hand | None = None) -> bool:
     """Whether a line gives the entry by its own name."""
     left, sign, _right = line.partition("=")
-    if not sign or not entry:
+    heads = _heads(left, entry, writing) if sign and entry else None
+    if heads is None:
         return False
-    try:
-        own = _head_and_places(entry_name(left, writing=writing))
-        asked = _head_and_places(entry_name(entry))
-    except ExpressionError:
-        return False
+    own, asked = heads
     rotation = {own[0], asked[0]} <= {*_POSES, "r"} and own[1] == asked[1]
     return (
         own == asked
@@ -765,19 +762,27 @@ def begins_with(line: str, entry: str, writing: Hand | None = None) -> bool:
     )
 
 
+def _heads(
+    left: str, entry: str, writing: Hand | None
+) -> tuple[tuple[str, str], tuple[str, str]] | None:
+    """The letters and places of a left side, and those of the entry; None of what is no name."""
+    try:
+        own = _head_and_places(entry_name(left, writing=writing))
+        return own, _head_and_places(entry_name(entry))
+    except ExpressionError:
+        return None
+
+
 def _is_meant(line: str, entry: str, writing: Hand) -> bool:
     """Whether a line gives an entry that is asked for by its long name: g1 of gravity_torques[0].
 
     ``g = 9.81`` is no gravity_torques, and Jv a part of the Jacobian.
     """
     left, _sign, right = line.partition("=")
-    if not _LONG_NAME.match(entry):
+    heads = _heads(left, entry, writing) if _LONG_NAME.match(entry) else None
+    if heads is None:
         return False
-    try:
-        own = _head_and_places(entry_name(left, writing=writing))
-        asked = _head_and_places(entry_name(entry))
-    except ExpressionError:
-        return False
+    own, asked = heads
     sure = (
         bool(asked[1]) or entry in _ONE_NUMBER or (bool(_MATRIX.search(right)) and own[0] != "jv")
     )
