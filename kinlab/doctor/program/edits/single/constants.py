@@ -96,8 +96,8 @@ def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
     if given is not None and called(given) == "append" and value in (0, 1):
         yield here.within(here.node, "value", type(value)(1 - value), "number", 1.05)
     if value == 0 and isinstance(here.parent, ast.IfExp) and here.field in ("body", "orelse"):
-        for new in _as_in_the_other_branch(here, scope):
-            yield here.instead(new, "name", _OF_A_BRANCH)
+        for other in _as_in_the_other_branch(here, scope):
+            yield here.instead(other, "name", _OF_A_BRANCH)
     if value == 1 and (angle := _angle_beside(here)) is not None:
         yield here.instead(angle, "name", _ANGLE_FOR_ONE)
     if value in _ROOTS and scope.has_numpy and isinstance(here.parent, ast.BinOp):
