@@ -157,12 +157,14 @@ def formula_file(
         if parts and not parts.keys() & entries.keys():
             del entries[key]
             entries |= parts
+            whole |= {one: grid for one in parts if parts_of and (grid := parts_of(one))}
             doubts |= dict.fromkeys(parts, doubts[key])
     explained: set[str] = set()
     for key, value in entries.items():
         own, entries[key] = typed.explained(_text(value, f"{place}: {key}"), key)
         explained |= own.keys()
         own, entries[key] = with_matrices(own, entries[key], f"{place}: {key}")
+        entries[key] = _of_gravity(entries[key], key)
         left = entries[key].partition("=")[0]
         if last is not None and is_another(left, key, last):
             said = N_("the formula begins with {text} =, which is another")
@@ -205,6 +207,27 @@ def formula_file(
     left = {key: left_over(*doubts[key], names) for key in doubts.keys() & file.formulas.keys()}
     unread = {key: words for key, words in left.items() if words}
     return replace(file, others=tuple(others), remarks=remarks, unread=unread, matrices=matrices)
+
+
+_STATIC = re.compile(r"(?:tau|u|Q)g?(\d?)")
+_RATES = re.compile(
+    r"dot|d{1,2}_?(?:q|th|theta)|(?:q|th|theta)_?d{1,2}|[\u0307\u0308]|diff|Derivative"
+)
+
+
+def _of_gravity(text: str, key: str) -> str:
+    """``tau_2 = ...`` without its left side, where gravity's torque is asked for."""
+    left, sign, right = text.partition("=")
+    place = re.fullmatch(r"gravity_torques\[(\d)\]", key)
+    if not sign or not place or "=" in right or _RATES.search(right):
+        return text
+    try:
+        found = _STATIC.fullmatch(typed.entry_name(left.strip("$& ")).replace("_", ""))
+    except ExpressionError:
+        return text
+    same = found and found[1] in ("", str(int(place[1]) + 1))
+    dollars = "$" if typed.is_latex(text) else ""
+    return f"{dollars}{right.strip(' $&')}{dollars}" if same else text
 
 
 _SIGNS = re.compile(r"[_{}\\\s]")

@@ -14,7 +14,10 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 
+import numpy as np
+
 from kinlab.errors import ExpressionError
+from kinlab.formulas import tree
 from kinlab.formulas.signs import latex
 from kinlab.formulas.signs.beside import with_products
 from kinlab.formulas.signs.brackets import closes, parts_at
@@ -23,6 +26,7 @@ from kinlab.formulas.signs.letters import ABOVE, BELOW, SIGNS, WIDE, ascii_text,
 from kinlab.formulas.signs.named import is_named, is_named_elsewhere, plain_name
 from kinlab.formulas.signs.refusals import refused
 from kinlab.formulas.signs.remarks import without_remarks
+from kinlab.formulas.text import parse
 from kinlab.host.language import N_, _
 
 # -------- Which writing it is
@@ -514,8 +518,8 @@ def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
     if lines and lines[-1] not in gives and "=" in lines[-1]:
         lines = sorted(lines, key=lambda line: not explains_another(line, lines))
     # what gives the entry before is how the writer came to it: L = K - P
-    own = [line.partition("=") for line in lines[:-1] if line not in gives]
-    if not lines[:-1] or any(line.count("=") != 1 for line in lines[:-1]):
+    own = [_ends(line) for line in lines[:-1] if line not in gives]
+    if not lines[:-1] or not all(map(_may_be_taken, lines[:-1])):
         return {}, text
     left = lines[-1].partition("=")[0] if "=" in lines[-1] else ""
     if not all(_is_own_name(name.strip("& ")) for name, *_rest in own):
@@ -527,6 +531,31 @@ def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
     dollars = "$" if is_latex(text) else ""
     formulas = {own_name(name): f"{dollars}{bare(right)}{dollars}" for name, _sign, right in own}
     return formulas, f"{dollars}{lines[-1]}{dollars}"
+
+
+def _may_be_taken(line: str) -> bool:
+    """Whether a line gives a name, and its steps, as far as they have the same names, are equal."""
+    _name, *steps = line.split("=")
+    return bool(steps) and (len(steps) == 1 or not _are_unequal(steps))
+
+
+def _are_unequal(steps: list[str]) -> bool:
+    """Whether two steps of the same names have different values."""
+    nodes = []
+    for step in steps:
+        with suppress(ExpressionError):
+            nodes.append(parse(plain_formula(f"${step}$" if is_latex(step) else step)))
+    last: frozenset[str] = frozenset(tree.names(nodes[-1])) if nodes else frozenset()
+    alike = [node for node in nodes if {*tree.names(node)} == last]
+    at = {name: np.array([0.7 + 0.13 * k, 1.9 - 0.31 * k]) for k, name in enumerate(sorted(last))}
+    values = [np.broadcast_to(tree.evaluate(node, at), (2,)) for node in alike]
+    return any(not np.allclose(one, values[-1]) for one in values)
+
+
+def _ends(line: str) -> tuple[str, str, str]:
+    """A name and what it comes to: ``s23 = ... = ...`` by its last part."""
+    name, sign, right = line.partition("=")
+    return name, sign, right.rpartition("=")[2]
 
 
 def explains_another(line: str, lines: list[str]) -> bool:
@@ -601,13 +630,44 @@ def several(text: str, entry: str) -> dict[str, str]:
             if not here and any({head, mine} <= group for group in _MEANT):
                 return {}  # the whole itself
             if here and any({head, mine} <= group for group in _MEANT):
-                named[name] = line
+                short = name.partition("[")[0]
+                named[name if short in (name, *LONG) else f"{short}{here}"] = line
             else:
                 own.append(line)
+    named = named if len(named) > 1 else _rows(lines, entry, writing)
+    own = [line for line in lines if line not in named.values()]
     if len(named) < 2 or len(lines) < len(cut):
         return {}
+    named = {name: _copied(line, named, writing) for name, line in named.items()}
     dollars = "$" if is_latex(text) else ""
     return {name: f"{dollars}{'; '.join([*own, line])}{dollars}" for name, line in named.items()}
+
+
+def _rows(lines: list[str], entry: str, writing: Hand) -> dict[str, str]:
+    """The rows of a whole by what books call these: ``r_1 = [...], r_2 = [...]``."""
+    found = {}
+    with suppress(ExpressionError):
+        names = {line: entry_name(line.partition("=")[0], writing=writing) for line in lines}
+        for line, name in names.items() if entry in _WITH_ROWS else ():
+            for k in range(1, 10):
+                if is_named(name, f"{entry} {k}"):
+                    found[f"{entry}[{k - 1}]"] = line
+    return found
+
+
+_WITH_ROWS = ("com_positions",)
+
+
+def _copied(line: str, named: dict[str, str], writing: Hand) -> str:
+    """``M21 = M12`` with what M12 is."""
+    left, sign, right = line.partition("=")
+    with suppress(ExpressionError):
+        asked = _head_and_places(entry_name(right, writing=writing)) if is_name(right) else None
+        same = [one for name, one in named.items() if _head_and_places(name) == asked]
+        other = same[0] if same else line
+        if other != line:
+            return f"{left}{sign}{other.partition('=')[2]}"
+    return line
 
 
 _STARTS_FORMULA = re.compile(r"^[-(\d.]")

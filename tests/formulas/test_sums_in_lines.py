@@ -172,3 +172,34 @@ def test_what_should_be_nothing_is_told_so(quantity: str, text: str) -> None:
     found = kl.diagnose("planar2r_rods", quantity, text)
     assert f"{text} should be 0" in found.causes[0].sentence
     assert found.causes[0].kinds == ("extra term",)
+
+
+@pytest.mark.parametrize(
+    ("robot", "quantity", "text"),
+    [
+        ("planar2r", "kinetic_energy", "v_{c1}^2 &= l_1^2\\dot q_1^2\\\\\nv_{c2}^2 &= \\dot x_2^2+\\dot y_2^2 = l_1^2\\dot q_1^2 + l_2^2(\\dot q_1+\\dot q_2)^2 + 2 l_1 l_2\\cos q_2\\,\\dot q_1(\\dot q_1+\\dot q_2)\\\\\nT &= \\tfrac12 m_1 v_{c1}^2 + \\tfrac12 m_2 v_{c2}^2"),
+        ("single_link", "inverse_dynamics", r"\tau = I_O\ddot\theta + m g \frac{l}{2}\cos\theta,\quad I_O = \frac{m l^2}{12} + m\left(\frac{l}{2}\right)^2 = \frac{m l^2}{3}"),
+        ("planar2r", "gravity_torques[1]", r"because rod 2 only turns with q1+q2: $\tau_{2} = m_2 g l_2 \cos(q_1+q_2)$"),
+        ("planar3r", "com_positions", r"r_1 = [l_{c1}c_1, l_{c1}s_1, 0], r_2 = [l_1c_1 + l_{c2}c_{12}, l_1s_1 + l_{c2}s_{12}, 0], r_3 = [l_1c_1+l_2c_{12}+l_{c3}c_{123}, l_1s_1+l_2s_{12}+l_{c3}s_{123}, 0]"),
+        ("planar2r", "mass_matrix", r"M = \begin{bmatrix} (m_1+m_2)l_1^2+m_2l_2^2+2m_2l_1l_2c_2 & m_2l_2^2+m_2l_1l_2c_2\\ * & m_2l_2^2\end{bmatrix} where * denotes the symmetric entry"),
+        ("planar2r", "mass_matrix", "double c2 = cos(q2);\nM[0][0] = (m1+m2)*l1*l1 + m2*l2*l2 + 2.0*m2*l1*l2*c2;\nM[0][1] = m2*l2*(l2 + l1*c2);\nM[1][0] = M[0][1];   // symmetric\nM[1][1] = m2*l2*l2;"),
+        ("scara", "fk[2,3]", "第3関節は下向きに動くので、z = d1 - q3 です。"),
+    ],
+)  # fmt: skip
+def test_derivations_rows_and_code_are_right(robot: str, quantity: str, text: str) -> None:
+    assert kl.diagnose(robot, quantity, text).agrees
+
+
+def test_steps_of_a_definition_that_are_unequal_are_refused() -> None:
+    text = r"\tau = I_O\ddot\theta + m g \frac{l}{2}\cos\theta,\quad I_O = m l^2 = \frac{m l^2}{3}"
+    with pytest.raises(KinlabError):
+        kl.diagnose("single_link", "inverse_dynamics", text)
+
+
+def test_tau_with_rates_is_no_torque_of_gravity() -> None:
+    with pytest.raises(KinlabError):
+        kl.diagnose("planar2r", "gravity_torques[1]", "tau2 = m2*l2^2*qdd2 + m2*g*l2*c12")
+
+
+def test_a_sum_of_hundreds_of_terms_ends_in_a_verdict() -> None:
+    assert not kl.diagnose("planar2r", "gravity_torques[1]", "1" + " + 1" * 400, samples=10).agrees

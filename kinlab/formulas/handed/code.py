@@ -12,6 +12,11 @@ from kinlab.formulas.signs.brackets import closes, outside, parts_at
 
 _FENCE = re.compile(r"^\s*```[\w+-]*\s*\n(.*?)\n?\s*```\s*$", re.DOTALL)
 _TICKS = re.compile(r"^\s*`([^`]+)`\s*[.;]?\s*$")
+_TWO_INDICES = re.compile(r"(?<![\w.\]])([A-Za-z]\w*)\[\s*(\d)\s*\]\[\s*(\d)\s*\]")
+_TYPE = re.compile(
+    r"(?m)^[ \t]{0,40}(?:const\s+)?(?:double|float|auto|var|let|const)\s+(?=[A-Za-z_]\w*\s*=)"
+)
+"""What C writes in front of a name."""
 _GOES_ON = re.compile(r"[ \t]*(?:\.{3}[^\n]*|(?<!\\)\\[ \t]*)\n\s*")
 """The end of a line that goes on in the next one, in MATLAB and in Python."""
 _NOTES = re.compile(r"/\*.*?\*/|\(\*.*?\*\)", re.DOTALL)
@@ -70,6 +75,7 @@ def without_code(text: str, alone: bool) -> str:
     text = _of_function(text)
     if "\\" in text or "$" in text:
         return text
+    text = _TWO_INDICES.sub(r"\1[\2,\3]", _TYPE.sub("", text))
     text = _without_hypot(text)
     owner, *others = sorted({*_OWNER.findall(text)}) or [""]
     if owner and not others and not re.search(rf"(?<![\w.]){owner}(?![\w.])", text):

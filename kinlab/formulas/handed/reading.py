@@ -69,7 +69,16 @@ _CONSTANT = re.compile(
 _MOVING = re.compile(r"theta|θ|q|(?<![A-Za-z])th|cos|sin|(?<![A-Za-z\\])[cs]_?\{?\d|\\d?dot")
 _ACCENTED = re.compile("[aeiouAEIOU][\u0300-\u0303\u0308]|[nN]\u0303|[cC]\u0327")
 """Letters of words whose accent is a sign of its own."""
-_DEFINED = re.compile(r"\s*(?::\s?=|\\coloneqq(?![A-Za-z]))(?!=)\s*")
+_STAR_SAID = re.compile(
+    r"[,;.\s(]{0,9}(?:\b(?:where|with|wobei|mit)\s+)?\$?\\?(?:\*|ast|star)\$?\s+"
+    r"(?:denotes?|is|means|stands\s+for|steht\s+für|表示)\s+[^=\n]{0,60}symm[^=\n]{0,60}$"
+)
+"""What a star in a symmetric matrix is said to be, behind it."""
+_ABBREVIATED = re.compile(
+    r"\(\s*(?:abbreviations?|abkürzungen|where|with|wobei|mit)\s*:?\s+(?P<inside>[^\n=]{1,40}=[^\n]*)\)\s*\.?\s*$",
+    re.IGNORECASE,
+)
+_DEFINED = re.compile(r"[ \t]{0,9}(?::\s?=|\\coloneqq(?![A-Za-z]))(?!=)\s*")
 _MAPLES = re.compile(r":(?=\s*(?:$|\n|[A-Za-z]\w{0,20}(?:\[[\d,\s]{1,5}\])?\s*:=))")
 """A colon that ends a statement of Maple's."""
 _ON_A_LINE = re.compile(r"\n\s*(?=(?:with|mit)\s)")
@@ -97,6 +106,7 @@ def as_formula(
     """
     refuse_nested(text, place)
     text = _ACCENTED.sub(lambda letter: unicodedata.normalize("NFC", letter[0]), text)
+    text = _ABBREVIATED.sub(_where, _STAR_SAID.sub("", text))
     text = _defined(_DOLLARS.sub("$$", text))
     text, numbered = without_numbers(plain_letters(text, place), place)
     text = _GAP.sub(lambda gap: "\n" if "\n" in gap[0] else " ", text)
@@ -126,3 +136,9 @@ def as_formula(
 def _defined(text: str) -> str:
     """``:=`` as a sign of equality, and the colon that ends such a statement as a semicolon."""
     return _DEFINED.sub(" = ", _MAPLES.sub(";", text) if ":=" in text else text)
+
+
+def _where(found: re.Match[str]) -> str:
+    """Definitions in parentheses as those behind ``where``."""
+    inside = found["inside"]
+    return f" where {inside}" if inside.count("(") == inside.count(")") else found[0]

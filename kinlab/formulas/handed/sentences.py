@@ -231,6 +231,9 @@ def _of_entry(pieces: list[str], entry: str) -> list[str]:
         formulas = [one for one in formulas if len(one) > _SHORT]
         formulas = formulas or [one for one in pieces[:1] if _plain(one) in given]
         last = [one for one in equations if not explains_another(one, equations)]
+        said = [one for one in last if not _explains(one, formulas)]
+        if said and all(len(one) < min(map(len, said)) for one in formulas):
+            formulas = []  # a sum that a sentence speaks of
         mine = formulas or last or [one for one in pieces if "=" in one]
     if len(mine) > 1:  # "L = T - V" says what it is, and the next line what it comes to
         mine = [one for one in mine if not says_what_it_is(one.partition("=")[2])] or mine
@@ -245,6 +248,12 @@ def _of_entry(pieces: list[str], entry: str) -> list[str]:
         used += _plain(" ".join(one.partition("=")[2] for one in more))
         others = [one for one in others if not any(one is known for known in more)]
     return kept
+
+
+def _explains(equation: str, formulas: list[str]) -> bool:
+    """Whether an equation gives a name that stands in one of the formulas."""
+    name = _plain(equation.partition("=")[0])
+    return any(name in _plain(one) for one in formulas)
 
 
 def _equations(piece: str) -> list[str]:

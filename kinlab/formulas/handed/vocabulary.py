@@ -12,7 +12,7 @@ from functools import cache
 from importlib import resources
 from typing import Any
 
-CHINESE = "\u4e00-\u9fff"
+CHINESE = "\u4e00-\u9fff\u3040-\u30fa\u30fc-\u30ff"
 LATIN = "A-Za-zÀ-ÖÙ-öù-ÿąčćďěęłńňřšśťůžźőű"
 """Letters of words, for patterns; without those that are signs of mathematics (ø, ż)."""
 BEHIND = "behind"

@@ -24,9 +24,9 @@ _LINES = re.compile(r"\\(begin|end)\{(?:eqnarray|flalign|alignat|IEEEeqnarray)(\
 _AMPERSANDS = re.compile(r"&\s*=\s*&")
 _COMMAND = re.compile(r"(?<!\\)\\[A-Za-z]")
 _DISPLAY = re.compile(
-    r"(?P<before>\s*(?:\$\$?|\\\[)?\s*)(?P<begin>\\begin\{(?P<name>(?:equation|align|aligned|gather|gathered|"
+    r"(?P<before>\s{0,40}(?:\$\$?|\\\[)?\s{0,40})(?P<begin>\\begin\{(?P<name>(?:equation|align|aligned|gather|gathered|"
     r"multline|split|displaymath)\*?)\})(?P<inside>.*)(?P<end>\\end\{(?P=name)\})"
-    r"(?P<behind>[\s.,;]*(?:\$\$?|\\\])?[\s.,;]*)",
+    r"(?P<behind>[\s.,;]{0,40}(?:\$\$?|\\\])?[\s.,;]{0,40}|[\s.,;]{0,40}\b(?:where|with|wobei|mit)\s(?:(?!\\begin).)*)",
     re.DOTALL,
 )
 _BIG = re.compile(r"\\(begin|end)\{(?:B|V)matrix\*?\}")
@@ -36,7 +36,7 @@ _CASES = re.compile(
     re.DOTALL,
 )
 _NAMED_CASES = re.compile(
-    r"^(\s*\$*\s*)\\?[A-Za-z][^=:&]{0,20}[=:]\s*(?=\\begin\{d?cases\}\s*\\?[A-Za-z][^&=]{0,20}=)"
+    r"^(\s{0,40}\${0,2}\s{0,40})\\?[A-Za-z][^=:&]{0,20}[=:]\s*(?=\\begin\{d?cases\}\s*\\?[A-Za-z][^&=]{0,20}=)"
 )
 """``C = \\begin{cases} C_{11} = ...``"""
 _FRACTION = re.compile(r"\\(?:nicefrac|sfrac|cfrac)(?![A-Za-z])")

@@ -10,7 +10,8 @@ from kinlab.host.language import N_
 
 BELOW = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
 ABOVE = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789")
-WIDE = {code: chr(code - 0xFEE0) for code in range(0xFF01, 0xFF5F)} | {0x3000: " ", 0x3002: "."}
+WIDE = {code: chr(code - 0xFEE0) for code in range(0xFF01, 0xFF5F)}
+WIDE |= {0x3000: " ", 0x3001: ",", 0x3002: "."}
 """Signs, digits and letters of a Chinese keyboard, and the plain ones."""
 SIGNS = WIDE | str.maketrans(
     {"·": "*", "⋅": "*", "×": "*", "−": "-", "–": "-", "÷": "/", "√": " sqrt", "½": "(1/2)"}

@@ -14,7 +14,7 @@ from kinlab.formulas.signs.brackets import closes, outside
 from kinlab.formulas.signs.refusals import refused
 from kinlab.host.language import N_, _
 
-_CHINESE = "\u4e00-\u9fff\u3001"
+_CHINESE = "\u4e00-\u9fff\u3040-\u30fa\u30fc-\u30ff\u3001"
 _SPACES = r"(?:\s|~|\\[,;:! ]|\\q?quad(?![A-Za-z])){0,20}+"
 _BEHIND = rf"(?:(?<!\\)[,;]|\\q?quad(?![A-Za-z])){_SPACES}"
 _WORDS = r"\\(?:text|textrm|textit|textbf|mbox)"

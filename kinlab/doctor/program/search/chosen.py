@@ -95,7 +95,8 @@ def turns_a_length(edit: ProgramEdit, observed: Observed, robot: Any) -> bool:
     if edit.kind != "sign" or edit.part == DATA or not isinstance(edit.changes[0].holder, list):
         return False
     table, seen = table_of(robot), observed.of(edit.node)
-    if table is None or seen is None or seen.shape != ():
+    product = isinstance(edit.node, ast.BinOp)  # d*sin(alpha), whose minus is forgotten
+    if table is None or seen is None or seen.shape != () or product:
         return False
     lengths = {_size(x) for link in table.links for x in (link.a, link.d)}
     values = {_size(x) for x in seen.values} - {0.0}
