@@ -318,7 +318,30 @@ def _by_quantity(
                     replace(one, causes=()) if _lost([one], formulas) else one
                     for one in done[plain]
                 ]
+        elif plain == "statics":
+            told = _without_forces(formulas, titles, robot, file, samples, seed)
+            done[plain] = [replace(one, remarks=(*one.remarks, *told)) for one in done[plain]]
     return done
+
+
+def _without_forces(
+    formulas: dict[str, Written],
+    titles: dict[str, str],
+    robot: Mechanism,
+    file: FormulaFile,
+    samples: int,
+    seed: int,
+) -> tuple[str, ...]:
+    """What is said of right torques that have not all of the tool's forces and moments."""
+    plain = "statics"
+    own = _answers(plain, formulas, titles, robot, file, samples, seed)[1]
+    felt = []
+    for force in WRENCH:
+        with_it = _answers(plain, formulas, titles, robot, file, samples, seed, (force,))[1]
+        if not np.array_equal(with_it, own):
+            felt.append(force)
+    said = _("it has no {forces} of the tool: as if there were none")
+    return (said.format(forces=", ".join(felt)),) if felt else ()
 
 
 def _simpler(

@@ -153,6 +153,7 @@ def formula_file(
             _text(value, at), key, at, holds, key in whole
         )
         doubts[key] = _text(value, at), told
+        entries[key] = typed.as_column(entries[key], key)
         parts = {} if key in whole else typed.several(entries[key], key)
         if parts and not parts.keys() & entries.keys():
             del entries[key]
@@ -166,7 +167,8 @@ def formula_file(
         own, entries[key] = with_matrices(own, entries[key], f"{place}: {key}")
         entries[key] = _of_gravity(entries[key], key)
         left = entries[key].partition("=")[0]
-        if last is not None and is_another(left, key, last):
+        other_angle = key.startswith("planar_pose[") and typed.is_angle(left)  # it has its cosine
+        if other_angle or (last is not None and is_another(left, key, last)):
             said = N_("the formula begins with {text} =, which is another")
             raise refused(f"{place}: {key}", said, text=left.strip("$& ")[:40])
         if last is not None and is_craigs_last(left, key, last):

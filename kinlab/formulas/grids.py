@@ -360,6 +360,8 @@ def opened(
             right, grid = grid[0][0], None
         if grid and len(grid) == 1 and name not in TWO:
             grid = [[cell] for cell in grid[0]]
+        if grid and name == "planar_pose" and len(grid) == _WITH_ANGLE:
+            grid = [*grid[:2], *([_wave(x, grid[2][0])] for x in ("cos", "sin"))]
         in_a_list = right[:1] == "[" and right[:2] != "[[" and ";" not in right
         if grid and name in TWO and len(grid[0]) == 1 and in_a_list:
             raise refused(at, N_("a row or a column? write [a, b; c, d] or [[a, b], [c, d]]"))
@@ -382,6 +384,16 @@ def opened(
                     below += f"{j}"
                 _put(plain, name + below, cell, at)
     return plain
+
+
+_WITH_ANGLE = 3
+"""Entries of a planar pose that has the angle itself, of which the engine has cosine and sine."""
+
+
+def _wave(function: str, cell: str) -> str:
+    """The cosine or sine of a cell, as typed."""
+    inside = cell.strip("$")
+    return f"$\\{function}({inside})$" if is_latex(cell) else f"{function}({inside})"
 
 
 def _beside_each(part: Grid, grid: Grid | None, place: str) -> Iterator[tuple[str, str]]:

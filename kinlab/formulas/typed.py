@@ -643,6 +643,39 @@ def several(text: str, entry: str) -> dict[str, str]:
     return {name: f"{dollars}{'; '.join([*own, line])}{dollars}" for name, line in named.items()}
 
 
+def as_column(text: str, entry: str) -> str:
+    """``x = ...; y = ...; phi = ...`` as the column that a planar pose is."""
+    if entry != "planar_pose":
+        return text
+    lines = _equations(text)
+    given: dict[str, str] = {}
+    own = []
+    for line in lines:
+        left, sign, right = line.partition("=")
+        name = _PLANAR.get(_joined_up(left.strip("&$ ")).lower())
+        if not sign or "=" in right or name in given:
+            return text
+        if name is None:
+            own.append(line)
+        else:
+            given[name] = right
+    if [*given] != [*"xyp"]:
+        return text
+    if not is_latex(text):
+        return "; ".join([*own, f"[{'; '.join(given.values())}]"])
+    column = r"\begin{bmatrix}" + r"\\".join(given.values()) + r"\end{bmatrix}"
+    return f"${'; '.join([*own, column])}$"
+
+
+_PLANAR = {"x": "x", "y": "y", "px": "x", "py": "y"}
+_PLANAR |= dict.fromkeys(("phi", "varphi", "φ", "ϕ", "theta", "θ", "psi", "alpha"), "p")
+
+
+def is_angle(left: str) -> bool:
+    """Whether a left side is the angle of a planar arm's tool."""
+    return _PLANAR.get(_joined_up(left.strip("&$ ")).lower()) == "p"
+
+
 def _rows(lines: list[str], entry: str, writing: Hand) -> dict[str, str]:
     """The rows of a whole by what books call these: ``r_1 = [...], r_2 = [...]``."""
     found = {}

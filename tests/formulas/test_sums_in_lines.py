@@ -203,3 +203,31 @@ def test_tau_with_rates_is_no_torque_of_gravity() -> None:
 
 def test_a_sum_of_hundreds_of_terms_ends_in_a_verdict() -> None:
     assert not kl.diagnose("planar2r", "gravity_torques[1]", "1" + " + 1" * 400, samples=10).agrees
+
+
+_POSE = "x = l1*c1 + l2*c12 + l3*c123", "y = l1*s1 + l2*s12 + l3*s123", "phi = q1 + q2 + q3"
+
+
+@pytest.mark.parametrize("between", ["; ", "\n", r" \\ "])
+def test_a_planar_pose_may_have_the_angle_itself(between: str) -> None:
+    text = between.join(_POSE)
+    if "\\" in between:
+        text = text.replace("*", " ").replace("phi", r"\varphi")
+    assert kl.diagnose("planar3r", "planar_pose", text).agrees
+    column = "; ".join(line.partition(" = ")[2] for line in _POSE)
+    assert kl.diagnose("planar3r", "planar_pose", f"[{column}]").agrees
+    found = kl.diagnose("planar3r", "planar_pose", text.replace("+ q3", "- q3"))
+    assert not found.agrees and found.causes
+    with pytest.raises(KinlabError):
+        kl.diagnose("planar3r", "planar_pose[2]", _POSE[2])
+
+
+def test_torques_without_one_of_the_tool_s_forces_say_so() -> None:
+    found = kl.diagnose("planar2r", "statics[1]", "tau2 = -l2*s12*fx + l2*c12*fy")
+    assert found.agrees and "no nz of the tool" in " ".join(found.remarks)
+    whole = kl.diagnose("planar2r", "statics[1]", "tau2 = -l2*s12*fx + l2*c12*fy + nz")
+    assert whole.agrees and not whole.remarks
+
+
+def test_maple_counts_from_one() -> None:
+    assert kl.diagnose("planar2r", "gravity_torques[1]", "g[2] := m2*g*l2*cos(q1+q2);").agrees

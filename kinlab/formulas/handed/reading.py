@@ -79,6 +79,7 @@ _ABBREVIATED = re.compile(
     re.IGNORECASE,
 )
 _DEFINED = re.compile(r"[ \t]{0,9}(?::\s?=|\\coloneqq(?![A-Za-z]))(?!=)\s*")
+_OF_MAPLE = re.compile(r"(?<![\w.])([A-Za-z]\w*)\[\s*([1-9])\s*(?:,\s*([1-9])\s*)?\](?=\s*:=)")
 _MAPLES = re.compile(r":(?=\s*(?:$|\n|[A-Za-z]\w{0,20}(?:\[[\d,\s]{1,5}\])?\s*:=))")
 """A colon that ends a statement of Maple's."""
 _ON_A_LINE = re.compile(r"\n\s*(?=(?:with|mit)\s)")
@@ -134,8 +135,13 @@ def as_formula(
 
 
 def _defined(text: str) -> str:
-    """``:=`` as a sign of equality, and the colon that ends such a statement as a semicolon."""
-    return _DEFINED.sub(" = ", _MAPLES.sub(";", text) if ":=" in text else text)
+    """``:=`` as a sign of equality, and the colon that ends such a statement as a semicolon.
+
+    Maple counts from 1: ``tau[2] := ...`` is tau2.
+    """
+    if ":=" not in text:
+        return _DEFINED.sub(" = ", text)
+    return _DEFINED.sub(" = ", _MAPLES.sub(";", _OF_MAPLE.sub(r"\1\2\3", text)))
 
 
 def _where(found: re.Match[str]) -> str:

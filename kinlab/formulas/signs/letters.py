@@ -11,7 +11,7 @@ from kinlab.host.language import N_
 BELOW = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
 ABOVE = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789")
 WIDE = {code: chr(code - 0xFEE0) for code in range(0xFF01, 0xFF5F)}
-WIDE |= {0x3000: " ", 0x3001: ",", 0x3002: "."}
+WIDE |= {0x3000: " ", 0x3001: ",", 0x3002: ".", 0xA1: " ", 0xBF: " "}
 """Signs, digits and letters of a Chinese keyboard, and the plain ones."""
 SIGNS = WIDE | str.maketrans(
     {"·": "*", "⋅": "*", "×": "*", "−": "-", "–": "-", "÷": "/", "√": " sqrt", "½": "(1/2)"}
