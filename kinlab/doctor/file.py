@@ -473,10 +473,17 @@ def require_whole(file: FormulaFile, robot: Mechanism) -> None:
         plain, index = split_name(label)
         if entry in file.matrices and not _ROTATION.match(entry):
             given.setdefault(plain, {})[index] = file.matrices[entry]
+    for key, labels in file.parts.items():
+        for label in labels:
+            plain, index = split_name(label) if label not in file.formulas else ("", ())
+            if plain and np.any(prepare(robot, plain, index, _FEWEST, 0)[1]):
+                said = N_("write it as a matrix of {size} entries")
+                raise refused(f"{file.path}: {key}", said, size=str(len(labels)))
     for plain, places in given.items():
         case, engine = prepare(robot, plain, (), _FEWEST, 0)
         if case.quantity.read is not None or engine.ndim != 1 + _AXES:
             continue
+        places = {(*index, 0)[:_AXES]: entry for index, entry in places.items()}  # a column
         rows, columns = (len({index[k] for index in places}) for k in range(_AXES))
         enough = 1 if "jacobian" in plain else 3 if plain == "fk" else len(engine[0])
         if np.any(engine[:, rows:enough]) or np.any(engine[:, :, columns:]):

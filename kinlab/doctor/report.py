@@ -157,9 +157,11 @@ def _of_all(wrong: list[Diagnosis]) -> Diagnosis:
 
 
 def _only(quantity: str, arm: Any) -> str:
-    """The matrix of one entry that an arm of one joint has: ``M = ...`` is ``mass_matrix[0,0]``."""
-    one = not isinstance(arm, FiveBar) and arm.n == 1 and quantity.endswith("_matrix[0,0]")
-    return quantity.partition("[")[0] if one else quantity
+    """What an arm of one joint has one of: ``M = ...`` is ``mass_matrix[0,0]``, and one centre."""
+    one = not isinstance(arm, FiveBar) and arm.n == 1
+    if one and quantity == "com_positions":
+        return "com_positions[0]"
+    return quantity.partition("[")[0] if one and quantity.endswith("_matrix[0,0]") else quantity
 
 
 def _in_full(quantity: str, robot: Any) -> str:

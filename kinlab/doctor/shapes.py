@@ -24,7 +24,7 @@ from kinlab.model.robot import Robot
 from kinlab.symbolic.vocabulary import is_planar
 
 _POSES, _JACOBIANS = ("T", "A", "H", "fk"), ("J", "jacobian")
-_PLACE = re.compile(r"([A-Za-z]+)(?:([1-9])([1-9])|\[(\d),(\d)\])")
+_PLACE = re.compile(r"([A-Za-z_]+)(?:([1-9])([1-9])|\[(\d),(\d)\])")
 _HOMOGENEOUS = (0, 1, 3)
 """Which rows and columns of a pose those of a planar one are."""
 _RATES = ("vx", "vy", "vz", "wx", "wy", "wz")
@@ -86,12 +86,16 @@ def in_full(file: FormulaFile, robot: Mechanism) -> tuple[FormulaFile, str]:
     """
     if isinstance(robot, FiveBar) or robot.table is None:
         return file, ""
-    for head in (*_POSES, *_JACOBIANS):
+    for head in (*_POSES, *_JACOBIANS, _OF_THE_TOOL):
         places = {place: entry for entry in file.formulas if (place := _place(entry, head))}
+        planar = head in _SIX_ROWS and not file.parts and is_planar(robot.table)
+        if planar and _turns(file, places, robot.n):
+            told = _("its rows are read as {rows}").format(rows="vx, vy, wz")
+            return _renamed(file, places, head, _IN_THE_PLANE, range(robot.n)), told
         size = max((k + 1 for place in places for k in place), default=0)
         if size < 3 or len(places) != size * size:
             continue
-        if head in _JACOBIANS:
+        if head not in _POSES:
             rows = _square(robot, size)
             if rows != [*range(size)]:
                 told = _("its rows are read as {rows}").format(
@@ -122,6 +126,20 @@ def _square(robot: Robot, size: int) -> list[int]:
         return square_rows(robot)
     except StructureError:
         return [*range(size)]
+
+
+_OF_THE_TOOL = "jacobian_tool"
+_SIX_ROWS = ("jacobian", _OF_THE_TOOL)  # J is the planar one of a planar arm
+_IN_THE_PLANE = [0, 1, 5]
+"""The rows of J that a planar arm's have, where the third is no velocity along z."""
+
+
+def _turns(file: FormulaFile, places: dict[tuple[int, int], str], joints: int) -> bool:
+    """Whether three rows are given, and the third is one of numbers that are not all nothing."""
+    if {*places} != {(i, j) for i in range(3) for j in range(joints)}:
+        return False
+    last = [file.formulas[places[2, j]] for j in range(joints)]
+    return all(one.op == "num" for one in last) and any(one.value for one in last)
 
 
 def _is_pose(file: FormulaFile, places: dict[tuple[int, int], str], size: int) -> bool:

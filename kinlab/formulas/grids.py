@@ -406,6 +406,9 @@ def _beside_each(part: Grid, grid: Grid | None, place: str) -> Iterator[tuple[st
     given = grid or [[""]]
     if 1 in (rows, columns) and 1 in (len(given), len(given[0])):  # a row or a column
         part, given = ([[x for row in one for x in row]] for one in (part, given))
+    centre = len(part) == 1 and part[0][0].startswith("com_positions")
+    if centre and len(given[0]) == 2:
+        part = [part[0][:2]]  # of a point in the plane z goes without saying
     if grid is None or (len(given), len(given[0])) != (len(part), len(part[0])):
         size = f"{rows} x {columns}" if columns > 1 else str(rows)
         raise refused(place, N_("write it as a matrix of {size} entries"), size=size)

@@ -659,8 +659,9 @@ def as_column(text: str, entry: str) -> str:
             own.append(line)
         else:
             given[name] = right
-    if [*given] != [*"xyp"]:
+    if {*given} != {*"xyp"}:
         return text
+    given = {name: given[name] for name in "xyp"}
     if not is_latex(text):
         return "; ".join([*own, f"[{'; '.join(given.values())}]"])
     column = r"\begin{bmatrix}" + r"\\".join(given.values()) + r"\end{bmatrix}"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 import kinlab as kl
+from kinlab.errors import KinlabError
 
 SCARA = (
     r"\begin{bmatrix}-a_1s_1-a_2s_{12}&-a_2s_{12}&0&0\\a_1c_1+a_2c_{12}&a_2c_{12}&0&0"
@@ -78,3 +79,36 @@ def test_what_may_be_a_length_or_an_acceleration_is_asked(robot, entry, text) ->
 )
 def test_where_nothing_is_accelerated_it_is_a_length(entry: str, text: str) -> None:
     assert kl.diagnose("planar2r", entry, text).agrees
+
+
+@pytest.mark.parametrize(
+    ("robot", "quantity", "rows"),
+    [
+        ("planar2r", "jacobian", "-l1*s1-l2*s12, -l2*s12; l1*c1+l2*c12, l2*c12; 1, 1"),
+        ("planar3r", "jacobian", "-l1*s1-l2*s12-l3*s123, -l2*s12-l3*s123, -l3*s123; "
+         "l1*c1+l2*c12+l3*c123, l2*c12+l3*c123, l3*c123; 1, 1, 1"),
+        ("planar2r", "jacobian_tool", "l1*s2, 0; l1*c2+l2, l2; 1, 1"),
+    ],
+)  # fmt: skip
+def test_three_rows_of_a_planar_arm_may_be_those_of_the_plane(robot, quantity, rows):
+    found = kl.diagnose(robot, quantity, f"[{rows}]")
+    assert found.agrees and "vx, vy, wz" in " ".join(found.remarks)
+    wrong = kl.diagnose(robot, quantity, f"[{rows.replace('l2', 'l1', 1)}]")
+    assert not wrong.agrees and wrong.causes
+    linear = ", ".join("0" for _ in rows.rpartition(";")[2].split(","))
+    assert kl.diagnose(robot, quantity, f"[{rows.rpartition(';')[0]}; {linear}]").agrees
+
+
+def test_a_point_in_the_plane_has_two_coordinates_and_one_in_space_three():
+    for robot, quantity, text in (
+        ("single_link", "com_positions", "[l/2*cos(q); l/2*sin(q)]"),
+        ("planar2r", "com_positions[1]", "[l1*c1+l2*c12; l1*s1+l2*s12]"),
+        ("planar2r", "com_positions[1]", "[l1*c1+l2*c12; l1*s1+l2*s12; 0]"),
+    ):
+        assert kl.diagnose(robot, quantity, text).agrees
+    for robot, quantity in (
+        ("spatial3r", "com_positions[2]"), ("planar2r", "com_positions"), ("planar2r", "mass_matrix"),
+        ("planar2r", "link_velocities"),
+    ):  # fmt: skip
+        with pytest.raises(KinlabError):
+            kl.diagnose(robot, quantity, "[l1*c1; l1*s1]")
