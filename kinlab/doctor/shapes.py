@@ -90,7 +90,8 @@ def in_full(file: FormulaFile, robot: Mechanism) -> tuple[FormulaFile, str]:
         places = {place: entry for entry in file.formulas if (place := _place(entry, head))}
         planar = head in _SIX_ROWS and not file.parts and is_planar(robot.table)
         if planar and _turns(file, places, robot.n):
-            told = _("its rows are read as {rows}").format(rows="vx, vy, wz")
+            rates = ", ".join(_RATES[k] for k in _IN_THE_PLANE)
+            told = _("its rows are read as {rows}").format(rows=rates)
             return _renamed(file, places, head, _IN_THE_PLANE, range(robot.n)), told
         size = max((k + 1 for place in places for k in place), default=0)
         if size < 3 or len(places) != size * size:
