@@ -319,12 +319,13 @@ def _by_quantity(
                     for one in done[plain]
                 ]
         elif plain == "statics":
-            told = _without_forces(formulas, titles, robot, file, samples, seed)
-            done[plain] = [replace(one, remarks=(*one.remarks, *told)) for one in done[plain]]
+            said = _without_forces(answers[1], formulas, titles, robot, file, samples, seed)
+            done[plain] = [replace(one, remarks=(*one.remarks, *said)) for one in done[plain]]
     return done
 
 
 def _without_forces(
+    right: Array,
     formulas: dict[str, Written],
     titles: dict[str, str],
     robot: Mechanism,
@@ -333,13 +334,12 @@ def _without_forces(
     seed: int,
 ) -> tuple[str, ...]:
     """What is said of right torques that have not all of the tool's forces and moments."""
-    plain = "statics"
-    own = _answers(plain, formulas, titles, robot, file, samples, seed)[1]
+    named = {name for text in formulas.values() for name in tree.names(text.node)}
     felt = []
     for force in WRENCH:
-        with_it = _answers(plain, formulas, titles, robot, file, samples, seed, (force,))[1]
-        if not np.array_equal(with_it, own):
-            felt.append(force)
+        if force not in named:
+            there = _answers("statics", formulas, titles, robot, file, samples, seed, (force,))
+            felt += [force] if not np.array_equal(there[1], right) else []
     said = _("it has no {forces} of the tool: as if there were none")
     return (said.format(forces=", ".join(felt)),) if felt else ()
 

@@ -84,9 +84,7 @@ def diagnose(
     """
     if isinstance(function, str):
         arm = mechanism(robot)
-        only = not isinstance(arm, FiveBar) and arm.n == 1 and quantity in VECTORS
-        entry = alone_of(quantity) if only else _only(quantity, arm)
-        document = {"robot": arm.name, "formulas": {entry: function}}
+        document = {"robot": arm.name, "formulas": {_asked_of(arm, quantity): function}}
         file = of_robot(document, "formula", arm)
         require_whole(as_judged(file, arm), arm)
         judged = examine_formulas(file, arm, whole(samples, "samples", FEWEST), seed_of(seed))
@@ -156,12 +154,16 @@ def _of_all(wrong: list[Diagnosis]) -> Diagnosis:
     return replace(both, causes=(cause,))
 
 
-def _only(quantity: str, arm: Any) -> str:
-    """What an arm of one joint has one of: ``M = ...`` is ``mass_matrix[0,0]``, and one centre."""
-    one = not isinstance(arm, FiveBar) and arm.n == 1
-    if one and quantity == "com_positions":
-        return "com_positions[0]"
-    return quantity.partition("[")[0] if one and quantity.endswith("_matrix[0,0]") else quantity
+def _asked_of(arm: Any, quantity: str) -> str:
+    """What is asked of an arm of one joint: of a vector, and of the centres, its only one."""
+    if isinstance(arm, FiveBar) or arm.n != 1:
+        return quantity
+    if quantity in VECTORS:
+        return alone_of(quantity)
+    if quantity == "com_positions":
+        return f"{quantity}[0]"
+    matrix = quantity.endswith("_matrix[0,0]")  # M = ... is its only entry
+    return quantity.partition("[")[0] if matrix else quantity
 
 
 def _in_full(quantity: str, robot: Any) -> str:

@@ -12,7 +12,7 @@ import unicodedata
 from collections.abc import Container, Iterable
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache, partial
 
 import numpy as np
 
@@ -567,9 +567,14 @@ def explains_another(line: str, lines: list[str]) -> bool:
     """
     name = _joined_up(line.partition("=")[0])
     pattern = re.compile(rf"(?<![A-Za-z]){re.escape(name)}(?!\d)")
-    rights = [other.partition("=")[2] for other in lines]
-    apart = [_joined_up(_COMMAND.sub(" +", right)) for right in rights]
-    return any(map(pattern.search, [*map(_joined_up, rights), *apart]))
+    return any(map(pattern.search, _rights(tuple(lines))))
+
+
+@lru_cache(maxsize=16)
+def _rights(lines: tuple[str, ...]) -> list[str]:
+    """The right sides of lines, joined up, with their commands and as names alone."""
+    rights = [line.partition("=")[2] for line in lines]
+    return [*map(_joined_up, rights), *(_joined_up(_COMMAND.sub(" +", right)) for right in rights)]
 
 
 _COMMAND = re.compile(r"\\(?:(?:begin|end)\{\w+\*?\}|(?=[A-Za-z]))")

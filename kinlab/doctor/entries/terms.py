@@ -400,6 +400,7 @@ def _whole(written: Written, new: str, kind: str, values: Array, cost: float) ->
 
 
 _OF_NOTHING = 0.6
+"""Cost of an entry that should be nothing: that is known whatever stands there."""
 _ONE_TERM = re.compile(r"[^-+]*(?:\([^()]*\)[^-+]*)*")
 """A product without a sign in front, whatever stands between its parentheses."""
 

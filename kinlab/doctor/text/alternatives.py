@@ -312,12 +312,11 @@ def _wave(line: Line, place: Place, wave: Node, typed: Place | None = None) -> N
     argument = wave.args[0]
     if typed is None:
         _node(line, place, tree.call(other, argument), "sin/cos", 1.0)
+        _node(line, place, tree.mul(tree.num(-1), tree.call(other, argument)), "sin/cos", 1.7)
     else:  # of the angle as it is typed
         value = np.cos(typed.value) if other == "cos" else np.sin(typed.value)
         line.instead(place, f"{other}({line.segment(typed)})", value, "sin/cos", 1.0)
         line.instead(place, f"-{other}({line.segment(typed)})", -value, "sin/cos", 1.7)
-    if typed is None:
-        _node(line, place, tree.mul(tree.num(-1), tree.call(other, argument)), "sin/cos", 1.7)
     for angle in (*line.names.angles, *_beside(line, argument)):
         if angle != argument and not (_is_turned(angle) and not _is_turned(argument)):
             _node(line, place, tree.call(wave.op, angle), "argument", 1.2)
@@ -423,6 +422,7 @@ def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
 
 
 _BEHIND_A_MINUS = 1.25
+"""Cost of a number that does not belong behind a minus: the 2 of ``-2*m2``."""
 
 
 def _plus_for_times(line: Line, place: Place, at: int) -> None:

@@ -207,11 +207,12 @@ _SAYS = (
 def _of_another_quantity(text: str, entry: str) -> str:
     """Words right in front of a formula that say of it that it is another quantity."""
     head = re.split(r"[\d\[]", entry)[0]
+    others = {names: noun for names, noun in _NOUN.items() if head not in names.split()}
+    if len(others) == len(_NOUN):
+        return ""  # of what it is asked for nobody has a noun here
     front = _NAME_BEHIND.sub("", _FORMULA.split(text)[0]).rstrip("$ \\")
-    for names, noun in _NOUN.items():
-        found = re.search(_SAYS.format(noun=noun), front, re.IGNORECASE)
-        known = any(head in others.split() for others in _NOUN)
-        if found and known and head not in names.split():
+    for noun in others.values():
+        if found := re.search(_SAYS.format(noun=noun), front, re.IGNORECASE):
             return found[0].strip(" .;。\n")
     return ""
 

@@ -573,7 +573,7 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
     turned = turned and here.field == "right" and len(shape) == 1
     if shape == ():
         across = (scope.addends.get(one, set()) for one in _of_the_other_axis(stem))
-        yield from _rotatedterms(here, scope, siblings.union(*across if whole else ()))
+        yield from _turned_terms(here, scope, siblings.union(*across if whole else ()))
         yield from _terms_of_others(here, scope, siblings)
     for text, piece in scope.pieces_here(shape).items():
         named = isinstance(piece, ast.Name | ast.Subscript)
@@ -611,7 +611,7 @@ def _of_one_joint(one: ast.expr, other: ast.expr) -> bool:
     return ast.dump(one.slice) == ast.dump(other.slice)
 
 
-def _rotatedterms(here: Here, scope: Scope, siblings: set[str]) -> Iterator[ProgramEdit]:
+def _turned_terms(here: Here, scope: Scope, siblings: set[str]) -> Iterator[ProgramEdit]:
     """What stands in the line beside, with cosines for sines: of x what is there of y."""
     own = {text_of(one) for one in summands(here.node)}
     for text in sorted(siblings):
