@@ -164,6 +164,10 @@ def formula_file(
     for key, value in entries.items():
         own, entries[key] = typed.explained(_text(value, f"{place}: {key}"), key)
         explained |= own.keys()
+        if steps := typed.unjudged_steps(value, own):
+            said = _("of what is given for {name} the last step is taken; another was not judged")
+            taken = said.format(name=", ".join(steps))
+            remarks[key] = "; ".join(filter(None, (remarks.get(key), taken)))
         own, entries[key] = with_matrices(own, entries[key], f"{place}: {key}")
         entries[key] = _of_gravity(entries[key], key)
         left = entries[key].partition("=")[0]

@@ -536,11 +536,28 @@ def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
 def _may_be_taken(line: str) -> bool:
     """Whether a line gives a name, and its steps, as far as they have the same names, are equal."""
     _name, *steps = line.split("=")
-    return bool(steps) and (len(steps) == 1 or not _are_unequal(steps))
+    return bool(steps) and not _held_against_the_last(steps)[0]
 
 
-def _are_unequal(steps: list[str]) -> bool:
-    """Whether two steps of the same names have different values."""
+def unjudged_steps(text: str, own: Container[str]) -> list[str]:
+    """The writer's names that a chain explains of which a step was held against no other.
+
+    Args:
+        text: as typed.
+        own: the names.
+    """
+    found = []
+    for line in _equations(text):
+        left, *steps = line.split("=")
+        if len(steps) > 1 and _held_against_the_last(steps)[1] and own_name(left) in own:
+            found.append(left.strip("& "))
+    return found
+
+
+def _held_against_the_last(steps: list[str]) -> tuple[bool, bool]:
+    """Whether steps of the last one's names are unequal to it; and whether one has other names."""
+    if len(steps) == 1:
+        return False, False
     nodes = []
     for step in steps:
         with suppress(ExpressionError):
@@ -549,7 +566,8 @@ def _are_unequal(steps: list[str]) -> bool:
     alike = [node for node in nodes if {*tree.names(node)} == last]
     at = {name: np.array([0.7 + 0.13 * k, 1.9 - 0.31 * k]) for k, name in enumerate(sorted(last))}
     values = [np.broadcast_to(tree.evaluate(node, at), (2,)) for node in alike]
-    return any(not np.allclose(one, values[-1]) for one in values)
+    unequal = any(not np.allclose(one, values[-1]) for one in values)
+    return unequal, len(alike) < len(steps)
 
 
 def _ends(line: str) -> tuple[str, str, str]:

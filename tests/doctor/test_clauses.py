@@ -469,6 +469,8 @@ _WRIST = "x = l1*c1 + l2*c12"
         "ungefähr", "大约", "not verified yet", "das Doppelte davon", "muss noch mit 2 multipliziert werden",
         "the sign must be reversed", "falta un término", "manca un termine", "valida solo per q2 piccolo",
         "valable seulement si q2 = 0", "válido sólo para q1 = 0", "摩擦を無視", "ではなく y である", "roughly",
+        "hence minus 0.1 for the gripper", "so minus the base offset", "not in degrees but in gradians",
+        "no approximation, but the second link is left out",
     ],
 )  # fmt: skip
 @pytest.mark.parametrize(

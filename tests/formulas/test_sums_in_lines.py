@@ -231,3 +231,15 @@ def test_torques_without_one_of_the_tool_s_forces_say_so() -> None:
 
 def test_maple_counts_from_one() -> None:
     assert kl.diagnose("planar2r", "gravity_torques[1]", "g[2] := m2*g*l2*cos(q1+q2);").agrees
+
+
+def test_a_step_of_a_definition_that_cannot_be_held_against_the_last_is_said() -> None:
+    text = (
+        r"v^2 = \dot x^2 + 2\dot y^2 = l_1^2\dot q_1^2 + l_2^2(\dot q_1+\dot q_2)^2 + "
+        r"2 l_1 l_2\cos q_2\,\dot q_1(\dot q_1+\dot q_2); T = \frac12 m_1 l_1^2\dot q_1^2 + "
+        r"\frac12 m_2 v^2"
+    )
+    found = kl.diagnose("planar2r", "kinetic_energy", text)
+    assert found.agrees and "another was not judged" in " ".join(found.remarks)
+    alone = text.replace(r"\dot x^2 + 2\dot y^2 = ", "")
+    assert not kl.diagnose("planar2r", "kinetic_energy", alone).remarks

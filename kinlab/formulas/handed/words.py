@@ -32,6 +32,7 @@ _OTHERWISE = re.compile(
     r"|horizontal\w*(?!\s+plane)|gemessen|misst"
     r"|senkrechte?n?"
     r"|waage?recht|grad|(?<!not )(?<!not in )(?<!no )degrees?(?!\s+of\s+freedom)"
+    r"|degrees?(?=\s+but\b)"
     r"|wrong\w*|incorrect\w*|mistak\w*|false"
     r"|falsch\w*|per\s+(?:unit|kg|kilogram|met(?:er|re))|pro\s+(?:kg|einheit|meter|masse\w*))\b"
     r"|\b(?:not|n['’]t|never)\s+(?:\w+\s+){0,2}"
@@ -81,7 +82,7 @@ _OTHERWISE = re.compile(
     r"|\boubli[ée]\w*|\bmultiplier\s+par\b|\bmultiplicar\s+por\b|\bmoltiplicare\s+per\b"
     r"|\baproxima(?:ção|ción)\b|\bapprossimazione\b|\bdesprez\w*|\bolvid\w+|\bdimenticat\w+"
     r"|\bno\s+(?:es\s+)?la\s+(?:cinética|potencial|energía)\b|\bnon\s+è\b|\bn['’]est\s+pas\b"
-    r"|(?<!no )(?<!without )\bapproximat\w*"
+    r"|(?<!no )(?<!without )\bapproximat\w*|\bapproximat\w*(?=,?\s+but\b)"
     r"|\b(?:näherung\w*|genähert\w*|missing|forgot(?:ten)?|fehl(?:t|en))\b|近似|缺少|漏掉"
     r"|(?<!counter)(?<!counter[ -])(?<!anti)(?<!anti[ -])\bclockwise\b"
     r"|\bim\s+uhrzeigersinn\b|顺时针"
@@ -132,7 +133,7 @@ _DENIED = re.compile(
 """The same, in front of a formula alone."""
 _MORE = re.compile(
     r"\b(?:plus|times|(?<!checked )(?<!verified )twice|multiplied|divided|except"
-    r"|(?<!no )(?<!hence )(?<!therefore )(?<!thus )(?<!so )(?<!explains the )"
+    r"|(?<!no )(?<!hence the )(?<!therefore the )(?<!thus the )(?<!explains the )"
     r"minus(?!\s+signs?\s+(?:is|are|comes?|follows?|arises?|results?|stems?|must|has)\b)"
     r"|apart|without|zuzüglich|abzüglich|ohne|außer"
     r"|mal|geteilt)\b|加上|减去|乘以|除以|再加|再乘",
