@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import replace
 from functools import cache
@@ -24,6 +25,7 @@ from kinlab.doctor.text.line import Line
 from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import numbers_at
 from kinlab.errors import KinlabError
+from kinlab.formulas import tree
 from kinlab.formulas.text import canonical, parse, words_in
 from kinlab.host.language import _
 from kinlab.symbolic.vocabulary import vocabulary
@@ -43,7 +45,8 @@ _FLOOD = 8
 """Slips in all entries together above which a list of them is no diagnosis."""
 _TIED = 5
 """Slips of one entry that are kept as alternatives."""
-_LOST = "missing factor"
+_LOST, _MISSING = "missing factor", "missing term"
+_RATE = re.compile(r"qd{1,2}\d+")
 _FUNCTIONS = {"sin", "cos", "tan"}
 _UNDONE = {"sign", "transposed", "row order", "inverse", "rotation transposed", "joint order"}
 _UNDONE |= {"row sign", "column sign", "rows swapped"}
@@ -251,9 +254,12 @@ def _is_simpler(slip: Slip, others: list[Slip], line: Line) -> bool:
     lost = {*words_in(new)} - {*words_in(line.text.symbols[name])}
     of_name = not any(map(line.turns, lost))
     whole = line.text.text == name
+    lacks = slip.kinds == (_MISSING,) and _lacks(slip, line)
 
     def beaten(one: Slip) -> bool:
         if len(slip.kinds) == len(one.kinds):
+            if lacks and one.kinds == (_MISSING,):
+                return True
             if whole and one.kinds in (("missing term",), ("factor",)):
                 return True
             both = slip.kinds == one.kinds == (_LOST,) and of_name
@@ -263,6 +269,26 @@ def _is_simpler(slip: Slip, others: list[Slip], line: Line) -> bool:
         return len(slip.kinds) < len(one.kinds)
 
     return all(map(beaten, others))
+
+
+def _lacks(slip: Slip, line: Line) -> bool:
+    """Whether a term that is missing is a name's: I1 of d11, which is multiplied by qdd1.
+
+    Of a name that stands alone its terms have something in common, and so has the missing one: g.
+    """
+    assert slip.defined is not None
+    name, new = slip.defined
+    old = parse(line.text.symbols[name]).terms
+    beside = [x.factors for x in parse(line.text.text).terms if name in tree.names(x)]
+    if len(beside) != 1:
+        return False
+    others = {word for one in beside[0] for word in tree.names(one)} - {name}
+    moving = {word for one in others for word in tree.names(line.meaning(one))}
+    if any(map(_RATE.fullmatch, moving)):
+        return True
+    common = set[str].intersection(*({*tree.names(one)} for one in old))
+    added = [one for one in parse(new).terms if one not in old]
+    return bool(common) and any(common <= {*tree.names(one)} for one in added)
 
 
 def _means_the_arm_s(

@@ -36,7 +36,7 @@ from kinlab.formulas.handed.prose import Doubt, left_over
 from kinlab.formulas.handed.reading import as_formula
 from kinlab.formulas.signs.latex import LAMBDA
 from kinlab.formulas.signs.letters import WIDE
-from kinlab.formulas.signs.named import LastJoint, is_another, is_craigs_last
+from kinlab.formulas.signs.named import LastJoint, is_another, is_another_slope, is_craigs_last
 from kinlab.formulas.signs.refusals import refused
 from kinlab.formulas.text import LENGTH, parse, tidied
 from kinlab.formulas.tree import Node
@@ -171,10 +171,12 @@ def formula_file(
         own, entries[key] = with_matrices(own, entries[key], f"{place}: {key}")
         entries[key] = _of_gravity(entries[key], key)
         left = entries[key].partition("=")[0]
-        other_angle = key.startswith("planar_pose[") and typed.is_angle(left)  # it has its cosine
-        if other_angle or (last is not None and is_another(left, key, last)):
+        other = [side for side in entries[key].split("=")[:-1] if is_another_slope(side, key)]
+        of_angle = key.startswith("planar_pose[") and typed.is_angle(left)  # it has its cosine
+        if other or of_angle or (last is not None and is_another(left, key, last)):
             said = N_("the formula begins with {text} =, which is another")
-            raise refused(f"{place}: {key}", said, text=left.strip("$& ")[:40])
+            shown = [*other, left][0].strip("$& ")[:40]
+            raise refused(f"{place}: {key}", said, text=shown)
         if last is not None and is_craigs_last(left, key, last):
             said = _(
                 "it is the tool's pose; frame {number} of the table lies in its joint, and the "
@@ -217,7 +219,7 @@ def formula_file(
 
 _STATIC = re.compile(r"(?:tau|u|Q)g?(\d?)")
 _RATES = re.compile(
-    r"dot|d{1,2}_?(?:q|th|theta)|(?:q|th|theta)_?d{1,2}|[\u0307\u0308]|diff|Derivative"
+    r"(?<!c)dot|d{1,2}_?(?:q|th|theta)|(?:q|th|theta)_?d{1,2}|[\u0307\u0308]|diff|Derivative"
 )
 
 
@@ -362,11 +364,11 @@ def _plain(
     entries: dict[str, str], symbols: dict[str, Any], place: str, writing: typed.Hand
 ) -> tuple[dict[str, str], dict[str, Any]]:
     """Formulas and symbols as typed, made plain."""
-    formulas = {}
+    formulas, rates = {}, dict[str, str]()
     for name, value in entries.items():
         formulas[name] = typed.plain_formula(value, f"{place}: {name}", writing)
-        typed.refuse_omega(formulas[name], f"{place}: {name}", symbols)
-    explained = {
+        rates |= typed.rates_of_joints(formulas[name], f"{place}: {name}", symbols)
+    explained = rates | {
         name: typed.plain_formula(value, f"{place}: symbol {name!r}", writing)
         for name, value in symbols.items()
         if isinstance(value, str)

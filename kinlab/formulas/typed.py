@@ -39,7 +39,7 @@ _BRACKETS = re.compile(r"(?<![\w.])([A-Za-z]\w*)\s*\[\s*(-?\d+)\s*\]")
 _INDEXED = re.compile(r"(?<![\w.])([A-Za-z]\w*)\(\s*(\d+)\s*\)")
 _UPPER = re.compile(r"(?<![\w.])([CS])_?([1-9]+)(?!\w)")
 _RATES = re.compile(r"(?<![A-Za-z])(?:(?:q|th|theta)d{1,2}|d{1,2}(?:q|th|theta))_?\d|dot|omega")
-_OMEGA = re.compile(r"(?<![\w.])omega_?([2-9])(?!\w)")
+_OMEGA = re.compile(r"(?<![\w.])(omega|w)_?([1-9])(?!\w)")
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ _WORDS = """
 """Names and functions of several letters, of which none is a product."""
 _GLUED = re.compile(r"_\w[A-Za-z]")
 """A product of names without a sign or a blank, as only LaTeX has it."""
-_CENTRE = re.compile(r"lc([₀-₉]+)")
+_CENTRE = re.compile(r"l_?c_?([₀-₉]+|(?<=_c)[1-9](?![\w.]))")
 
 # -------- A formula
 
@@ -407,24 +407,38 @@ def _capitals(text: str, place: str, writing: Hand) -> str:
     return _UPPER.sub(small, text)
 
 
-def refuse_omega(text: str, place: str, known: Iterable[str]) -> None:
-    """Refuses ``omega2``, which is a joint's rate to some and a link's angular velocity to others.
+def rates_of_joints(text: str, place: str, known: Iterable[str]) -> dict[str, str]:
+    """What ``omega2`` means, which is a joint's rate to some, and a link's to others.
+
+    Where it is added to the one before, ``omega1 + omega2``, it is a joint's.
+
+    Args:
+        text: a formula as plain text.
+        place: what to put in front of a message.
+        known: names that the writer explains.
 
     Raises:
         ExpressionError: it stands there, and nothing says what it is.
     """
-    for found in _OMEGA.finditer(text):
-        if found[0] not in known:
-            k = found[1]
+    found: dict[str, str] = {}
+    for one in _OMEGA.finditer(text):
+        name, letter, k = one[0], one[1], int(one[2])
+        if name in known:
+            continue
+        added = rf"\b{letter}_?(?:{k - 1}\s*\+\s*{letter}_?{k}|{k}\s*\+\s*{letter}_?{k + 1})(?!\w)"
+        if re.search(added, text):
+            found[name] = f"qd{k}"
+        elif letter == "omega" and k > 1:
             raise refused(
                 place,
                 N_(
                     "{found}: the rate of joint {k}, or the angular velocity of link {k}? write "
                     "qd{k} or the sum of rates, or explain it in [symbols]"
                 ),
-                found=found[0],
+                found=name,
                 k=k,
             )
+    return found
 
 
 # -------- Left sides, and several equations
@@ -549,8 +563,9 @@ def unjudged_steps(text: str, own: Container[str]) -> list[str]:
     found = []
     for line in _equations(text):
         left, *steps = line.split("=")
-        if len(steps) > 1 and _held_against_the_last(steps)[1] and own_name(left) in own:
-            found.append(left.strip("& "))
+        if len(steps) > 1 and _held_against_the_last(steps)[1]:
+            with suppress(ExpressionError):  # a derivative is no name
+                found += [left.strip("& ")] if own_name(left) in own else []
     return found
 
 
@@ -836,7 +851,9 @@ def _also(name: str, entry: str) -> bool:
 
 def turned(left: str, right: str, entry: str) -> bool:
     """Whether the entry's own name stands behind the sign of equality, and no name before it."""
-    return bool(left) and begins_with(f"{right.strip('$ ')} =", entry) and not is_name(left)
+    name = right.strip("$ ")
+    named = begins_with(f"{name} =", entry) or (is_name(name) and is_name_of(name, entry))
+    return bool(left) and named and not is_name(left)
 
 
 def claims(text: str, entry: str = "", writing: Hand | None = None) -> str:
@@ -940,8 +957,8 @@ _DETERMINANT = re.compile(r"\\det\s*(?:\(?\s*J\s*\)?)?|\|\s*J\s*\|")
 """The determinant of J as it is typed."""
 
 
-_DERIVATIVE = re.compile(r"∂\s*([VUPxy])\s*/\s*∂\s*(?:q|th|theta|θ)_?\{?([1-9])\}?")
-_DERIVED = {"V": "g", "U": "g", "P": "g", "x": "J1", "y": "J2"}
+_DERIVATIVE = re.compile(r"(?:∂\s*|d)([VUPxyz])\s*/\s*(?:∂\s*|d)(?:q|th|theta|θ)_?\{?([1-9])\}?")
+_DERIVED = {"V": "g", "U": "g", "P": "g", "x": "J1", "y": "J2", "z": "J3"}
 """What the derivative of something by a joint's position is called."""
 
 
@@ -966,9 +983,9 @@ def entry_name(text: str, place: str = "expression", writing: Hand | None = None
         return "det J"
     if name := plain_name(whole) or plain_name(typed) or _range_name(typed):
         return name
-    if "∂" in typed:
-        found = _DERIVATIVE.fullmatch(unicodedata.normalize("NFKC", typed))
-        return f"{_DERIVED[found[1]]}{found[2]}" if found else typed
+    slope = _DERIVATIVE.fullmatch(unicodedata.normalize("NFKC", typed))
+    if slope or "∂" in typed:
+        return f"{_DERIVED[slope[1]]}{slope[2]}" if slope else typed
     named = _NAMED.fullmatch(typed)
     if named and (not named[2] or named[1] == "fk" or "_" in named[1] or named[1] in LONG):
         return typed  # a quantity by its own name
@@ -1071,8 +1088,8 @@ def of_one_name(left: str, name: str) -> bool:
         return True
     if places != wanted and (places or wanted not in ("", "1")):
         return False
-    if mine == "r" and head in _POSES:
-        return True  # the rotation of a transform: T12 of R12
+    if {mine, head} <= {*_POSES, "r"} and (mine == "r" or _ROTATION.fullmatch(places)):
+        return True  # the rotation of a transform: T12 of R12, and r12 of T12
     return head == mine or not known or any(mine in group for group in known)
 
 

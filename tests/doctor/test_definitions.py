@@ -256,3 +256,48 @@ def test_an_angle_with_the_other_sign_in_all_its_parts_is_no_other_angle() -> No
     text = "y = l1*sin(q1) - l2*sin(q1-q2)"
     (cause, *_others) = kl.diagnose("planar2r", "y", text).causes
     assert len(cause.kinds) == 2 and "(-" not in cause.sentence, cause.sentence
+
+
+TORQUE = (
+    "h = m2*l1*lc2*sin(q2); d11 = m1*lc1^2 + I1 + m2*(l1^2 + lc2^2 + 2*l1*lc2*cos(q2)) + I2; "
+    "d12 = m2*(lc2^2 + l1*lc2*cos(q2)) + I2; g1 = (m1*lc1 + m2*l1)*g*cos(q1) + "
+    "m2*lc2*g*cos(q1+q2); tau1 = d11*qdd1 + d12*qdd2 - h*(2*qd1*qd2 + qd2^2) + g1"
+)
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "told"),
+    [
+        (" + I1 + m2", " + m2", "d11: the term I1 is missing"),
+        ("*cos(q2)) + I2; g1", "*cos(q2)); g1", "d12: the term I2 is missing"),
+        ("(m1*lc1 + m2*l1)", "(m1*lc1)", "g1: the term m2*l1 is missing"),
+    ],
+)
+def test_a_term_is_missing_in_the_name_that_lacks_it(right, wrong, told) -> None:
+    assert kl.diagnose("planar2r_rods", "inverse_dynamics[0]", TORQUE).agrees
+    found = kl.diagnose(
+        "planar2r_rods", "inverse_dynamics[0]", with_slips(TORQUE, [(right, wrong)])
+    )
+    assert told in found.causes[0].sentence, str(found)
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "told"),
+    [
+        ("2*b*cos", "b*cos", "b*cos(q2) should be 2*b*cos(q2)"),
+        ("+ 2*b", "- 2*b", "- 2*b*cos(q2) should be + 2*b*cos(q2)"),
+        ("cos(q2)", "sin(q2)", "sin(q2) should be cos(q2)"),
+    ],
+)
+def test_names_of_numbers_are_no_slips(right, wrong, told) -> None:
+    text = "M11 = a + 2*b*cos(q2), a = 1.115, b = 0.3"
+    assert kl.diagnose("planar2r", "mass_matrix[0,0]", text).agrees
+    found = kl.diagnose("planar2r", "mass_matrix[0,0]", with_slips(text, [(right, wrong)]))
+    (cause, *_others) = found.causes
+    assert len(cause.kinds) == 1 and told in cause.sentence, str(found)
+
+
+def test_a_name_of_a_number_is_the_arm_s_by_its_letter_and_its_digit() -> None:
+    text = "M44 = Izz4 + m4*r4 + Im4 where r4 = 0.01, Izz4 = 0.0006, Im4 = 0.02"
+    (cause, *_others) = kl.diagnose("scara", "mass_matrix[3,3]", text).causes
+    assert cause.kinds == ("power",) and "r4 should be r4" in cause.sentence

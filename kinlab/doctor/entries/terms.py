@@ -23,6 +23,7 @@ from kinlab.doctor.text.mend import Mended, mended, one_after_another, rewritten
 from kinlab.doctor.text.numbers_off import as_meant, beside_rounded, rounded_in
 from kinlab.doctor.text.written import Written
 from kinlab.formulas import tree
+from kinlab.formulas.text import parse, words_in
 from kinlab.formulas.tree import Node
 from kinlab.host.language import N_, _
 from kinlab.symbolic.trig import Poly
@@ -277,6 +278,8 @@ def _no_coincidence(line: Line, one: Mended, right: Node, derived: Reference) ->
     A text with decimals may have a number in one place and its name in another.
     """
     text, own = replace(line.text, text=one.text), dict(line.at)
+    if _names_a_number(text):
+        return True
     if any(not n.whole and 12 * n.value % 1 and not n.exponent for n in text.literals):
         return True
     here, held = text.values(own), {}
@@ -288,6 +291,12 @@ def _no_coincidence(line: Line, one: Mended, right: Node, derived: Reference) ->
     target = tree.evaluate(right, other)
     gap = np.max(np.abs(text.values(other) - target))
     return bool(gap <= TOLERANCES.effect_matches * (np.max(np.abs(target)) or 1.0))
+
+
+def _names_a_number(text: Written) -> bool:
+    """Whether a name in a text stands for a number that is none of the robot's: M for m1 + m2."""
+    own = ({*words_in(text.text)} & text.symbols.keys()) - text.known.keys()
+    return any(not tree.names(parse(text.symbols[name])) for name in own)
 
 
 _MOVES = re.compile(r"qd{0,2}\d+")

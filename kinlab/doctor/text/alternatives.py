@@ -77,9 +77,11 @@ def study_definition(line: Line) -> None:
         return
     end, told = len(line.source), N_("the term {term} is missing")
     there = {*words_in(line.source)}
-    for name in (name for name in line.text.symbols if name not in there):
-        value = replace(line.text, text=name).values(line.at)
-        if np.ptp(value) > 0 and line.meaning(name) not in line.names.angles:
+    own = {name: replace(line.text, text=name).values(line.at) for name in line.text.symbols}
+    own = {x: value for x, value in own.items() if line.meaning(x) not in line.names.angles}
+    moments = {name: value for name, value in line.atoms.items() if name[0] in "IJ"}
+    for name, value in (own | moments).items():
+        if np.ptp(value) > 0 and name not in there:
             span = (end, end, f"{line.gap}+{line.gap}{name}")
             new = line.root.value + value
             line.edit(line.root, new, span, "missing term", 1.15, told, {"term": name})

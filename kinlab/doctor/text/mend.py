@@ -23,6 +23,7 @@ from kinlab.doctor.text.line import (
 )
 from kinlab.doctor.text.pairs import pairs_adding_up, pairs_in_product
 from kinlab.formulas import tree
+from kinlab.formulas.signs.brackets import closes
 from kinlab.formulas.text import words_in
 from kinlab.tolerances import TOLERANCES
 
@@ -322,7 +323,10 @@ def rewritten(source: str, changes: tuple[Change, ...]) -> str | None:
     """The text with the changes in place; None where it is no formula any more."""
     text = source
     for change in sorted(_nested(source, changes), key=lambda c: (-c.start, -c.end)):
-        text = text[: change.start] + change.new + text[change.end :]
+        before, behind = text[: change.start], text[change.end :]
+        inside = before.rstrip().endswith("(") and behind.lstrip().startswith(")")
+        new = change.new[1:-1] if inside and _in_parentheses(change.new) else change.new
+        text = before + new + behind
     if any(change.new.startswith("-") for change in changes):
         text = _signs_in_front(text)
     text = re.sub(r"^\s*\+\s*", "", text.strip())
@@ -333,6 +337,11 @@ def rewritten(source: str, changes: tuple[Change, ...]) -> str | None:
     except SyntaxError:
         return None
     return text
+
+
+def _in_parentheses(text: str) -> bool:
+    """Whether one pair of parentheses stands around all of it."""
+    return text.startswith("(") and closes(text) == len(text) - 1
 
 
 def _signs_in_front(text: str) -> str:

@@ -223,7 +223,8 @@ def _by_value(name: str, given: Node, words: dict[str, float], place: str) -> No
         return tree.sym(name)
     alike = [w for w, x in words.items() if abs(x - value) <= TOLERANCES.same_number * abs(x)]
     close = [w for w in alike if w[0].lower() == name[0].lower()]
-    for found in (alike, close):
+    numbered = [w for w in close if w[-1] == name[-1] and w[-1].isdigit()]
+    for found in (alike, close, numbered):
         if len(found) == 1:
             return tree.sym(found[0])
     return given

@@ -13,6 +13,7 @@ from kinlab.formulas.signs.brackets import closes, outside, parts_at
 _FENCE = re.compile(r"^\s*```[\w+-]*\s*\n(.*?)\n?\s*```\s*$", re.DOTALL)
 _TICKS = re.compile(r"^\s*`([^`]+)`\s*[.;]?\s*$")
 _TWO_INDICES = re.compile(r"(?<![\w.\]])([A-Za-z]\w*)\[\s*(\d)\s*\]\[\s*(\d)\s*\]")
+_ONE_INDEX = re.compile(r"(?<![\w.\]])([A-Za-z]\w*)\[\s*([0-8])\s*\](?!\s*\[)")
 _TYPE = re.compile(
     r"(?m)^[ \t]{0,40}(?:const\s+)?(?:double|float|auto|var|let|const)\s+(?=[A-Za-z_]\w*\s*=)"
 )
@@ -24,6 +25,8 @@ _COMMENT = re.compile(
     r"[ \t]//(?:[ \t]*(?!(?:sin|cos|tan|sqrt)\b)[A-Za-z\u4e00-\u9fff',.:-]+)+[ \t]*$", re.MULTILINE
 )
 """Behind two slashes words alone; what may be a divisor stays."""
+_REMARK = re.compile(r"(?m)(?:^|[ \t])#(?![\d{])[^\n]*$")
+"""What Python leaves out."""
 _LONG_WORD = re.compile(r"[A-Za-z]{3}|[\u4e00-\u9fff]")
 _STATE = r"(?:q|qd|qdd|dq|ddq|th|theta|thd|thetad|θ|t|v|a)_?\d?"
 _LAMBDA = re.compile(rf"^(\s*\w+\s*=\s*)?lambda\s+{_STATE}(?:\s*,\s*{_STATE})*\s*:\s*(?=\S)")
@@ -70,12 +73,16 @@ def without_code(text: str, alone: bool) -> str:
         found = around.match(text)
         text = found[1] if found else text
     text = _NOTES.sub(" ", text)
+    text = _REMARK.sub("", text)
     text = _COMMENT.sub(lambda m: " " if _LONG_WORD.search(m[0]) else m[0], text)
     text = _NUMBERED.sub("", text)
     text = _of_function(text)
     if "\\" in text or "$" in text:
         return text
-    text = _TWO_INDICES.sub(r"\1[\2,\3]", _TYPE.sub("", text))
+    text = _TYPE.sub("", text)
+    if any("0" in found[1:] for found in _TWO_INDICES.findall(text)):  # C's q[1] beside M[0][0]
+        text = _ONE_INDEX.sub(lambda found: f"{found[1]}{int(found[2]) + 1}", text)
+    text = _TWO_INDICES.sub(r"\1[\2,\3]", text)
     text = _without_hypot(text)
     owner, *others = sorted({*_OWNER.findall(text)}) or [""]
     if owner and not others and not re.search(rf"(?<![\w.]){owner}(?![\w.])", text):

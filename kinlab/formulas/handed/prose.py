@@ -66,6 +66,10 @@ _SUBJECT = re.compile(
     re.IGNORECASE,
 )
 """What begins a text that says whose torque it gives."""
+_SAID_TO_BE = re.compile(
+    rf"\b(?:this|that|it|das|dies)\s+(?:is|ist)\b{_SUBJECT.pattern}", re.IGNORECASE
+)
+"""The same behind a formula: ``This is the torque of joint 1``."""
 _AXIS = re.compile(r"achsen?\b", re.IGNORECASE)
 _ORDINAL = re.compile("第[一二三四1-9]轴")
 """A joint, where a number says which."""
@@ -245,6 +249,7 @@ def of_another_part(text: str, entry: str) -> str:
     """What says first that it is of another joint: ``torque of the first joint`` of tau2."""
     plain, own = flat(text), {*re.findall(r"\d", _counted_from_1(entry))}
     begins = None if "=" in plain else _SUBJECT.match(plain)  # tau2 = ... says what it is
+    begins = begins or _SAID_TO_BE.search(plain)
     found = _PART.match(plain, begins.end()) if begins and own else None
     number = _number_of(found) if found else ""
     return plain[: found.end()].strip()[:_MOST] if found and number and number not in own else ""

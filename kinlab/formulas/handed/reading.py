@@ -15,6 +15,7 @@ from kinlab.formulas.handed.rates import plain_rates
 from kinlab.formulas.handed.units import without_units
 from kinlab.formulas.handed.words import refuse_comments, without_words
 from kinlab.formulas.signs.dressed import undressed
+from kinlab.formulas.signs.macros import written_out
 from kinlab.formulas.signs.remarks import without_numbers
 from kinlab.formulas.text import refuse_nested
 
@@ -37,6 +38,16 @@ _MEANS = re.compile(
     r"(?<==)([^=]+?)[,，;；]\s*(?=\$?[lLmI]_?\{?c?\d\}?\$?\s*(?:为|是|表示|(?:is|are|denotes?|being|ist)\s))"
 )
 """What explains a name behind a formula without saying where: ``x = ..., l1 is the length``."""
+_MOVING_RATES = re.compile(
+    r"(?<!c)dot|d{1,2}_?(?:q|th)|(?:q|th|theta)_?d{1,2}|[\u0307\u0308]|diff|Derivative|''"
+)
+_STATIC_TORQUE = re.compile(
+    r"(?:(?P<typeset>\\tau)|(?<![A-Za-z\\])(?:tau|τ))_?(?:\{\s{0,2}g?\s{0,2},?\s{0,2}(?P<a>[1-9])\s{0,2}\}"
+    r"|g?_?(?P<b>[1-9₁-₉]))(?![\w])"
+)
+"""A joint's torque, which is gravity's where nothing moves: ``\\tau_{g2}``, ``tau2``."""
+_DIGITS = str.maketrans("₁₂₃₄₅₆₇₈₉", "123456789")
+_PLACE_BELOW = re.compile(r"_\{\s{0,2}([A-Za-z]{2,8})\s{0,2},\s{0,2}([1-9])\s{0,2}\}")
 _OF_A_WRENCH = ("tau", "statics", "inverse_dynamics_loaded", "Q", "u")
 _GAP = re.compile(r"\s{12,}")
 _NUMBERS = re.compile(
@@ -80,6 +91,10 @@ _ABBREVIATED = re.compile(
 )
 _DEFINED = re.compile(r"[ \t]{0,9}(?::\s?=|\\coloneqq(?![A-Za-z]))(?!=)\s*")
 _OF_MAPLE = re.compile(r"(?<![\w.])([A-Za-z]\w*)\[\s*([1-9])\s*(?:,\s*([1-9])\s*)?\](?=\s*:=)")
+_OF_TIME = re.compile(r"(?<![\w.])(?:q|th|theta|θ)\[\s*[1-9]\s*\]\s*\(\s*t\s*\)")
+"""Maple's ``theta[2](t)``: as nothing else has it, all indices count from 1."""
+_PLACE = re.compile(r"(?<![\w.])([A-Za-zθ]\w*)\[\s*([1-9])\s*\](?:\s*\(\s*t\s*\))?")
+_ANY_ZERO = re.compile(r"\[\s*0\s*[\],]|\*\*")
 _MAPLES = re.compile(r":(?=\s*(?:$|\n|[A-Za-z]\w{0,20}(?:\[[\d,\s]{1,5}\])?\s*:=))")
 """A colon that ends a statement of Maple's."""
 _ON_A_LINE = re.compile(r"\n\s*(?=(?:with|mit)\s)")
@@ -106,6 +121,7 @@ def as_formula(
         ExpressionError: what can be read in two ways, or a clause that is not so.
     """
     refuse_nested(text, place)
+    text = written_out(text, place)
     text = _ACCENTED.sub(lambda letter: unicodedata.normalize("NFC", letter[0]), text)
     text = _ABBREVIATED.sub(_where, _STAR_SAID.sub("", text))
     text = _defined(_DOLLARS.sub("$$", text))
@@ -117,6 +133,9 @@ def as_formula(
     text = _GIVEN.sub("where", _COMMA.sub(r"\1.\2", _BRACED_COMMA.sub(".", text)))
     text = _TWICE.sub(lambda found: f"{found['name']}{found['again']}", text)
     text = _ON_A_LINE.sub(" ", _REMARK.sub(r"\1: ", text))
+    text = _PLACE_BELOW.sub(r"_{\1\2}", text)
+    if entry.startswith("gravity_torques") and not _MOVING_RATES.search(text):
+        text = _STATIC_TORQUE.sub(_of_gravity, text)
     text = _NUMBERS.sub(lambda found: f"{_BETWEEN.sub('; ', found[1]).rstrip('; ')}; ", text)
     text = _MEANS.sub(r"\1, where ", _SCORE.sub(" ", text), count=1)
     text = _WRENCH.sub("", text) if entry.startswith(_OF_A_WRENCH) else text
@@ -139,9 +158,22 @@ def _defined(text: str) -> str:
 
     Maple counts from 1: ``tau[2] := ...`` is tau2.
     """
+    if _OF_TIME.search(text) and not _ANY_ZERO.search(text):
+        text = _PLACE.sub(_without_brackets, text)
     if ":=" not in text:
         return _DEFINED.sub(" = ", text)
     return _DEFINED.sub(" = ", _MAPLES.sub(";", _OF_MAPLE.sub(r"\1\2\3", text)))
+
+
+def _of_gravity(found: re.Match[str]) -> str:
+    """``g_{2}`` of ``\\tau_{g2}``, ``g2`` of ``tau2``."""
+    place = (found["a"] or found["b"]).translate(_DIGITS)
+    return f"g_{{{place}}}" if found["typeset"] else f"g{place}"
+
+
+def _without_brackets(found: re.Match[str]) -> str:
+    """``m1`` of ``m[1]``, ``theta2(t)`` of ``theta[2](t)``."""
+    return f"{found[1]}{found[2]}{'(t)' if found[0].endswith(')') else ''}"
 
 
 def _where(found: re.Match[str]) -> str:

@@ -83,7 +83,8 @@ _OTHERWISE = re.compile(
     r"|\baproxima(?:ção|ción)\b|\bapprossimazione\b|\bdesprez\w*|\bolvid\w+|\bdimenticat\w+"
     r"|\bno\s+(?:es\s+)?la\s+(?:cinética|potencial|energía)\b|\bnon\s+è\b|\bn['’]est\s+pas\b"
     r"|(?<!no )(?<!without )\bapproximat\w*|\bapproximat\w*(?=,?\s+but\b)"
-    r"|\b(?:näherung\w*|genähert\w*|missing|forgot(?:ten)?|fehl(?:t|en))\b|近似|缺少|漏掉"
+    r"|\b(?:näherung\w*|genähert\w*|missing|fehl(?:t|en)"
+    r"|forgot(?:ten)?(?![^.;]{0,60}\b(?:but|then|now)\b[^.;]{0,20}\b(?:correct|fix|add)(?:ed)?\b))\b|近似|缺少|漏掉"
     r"|(?<!counter)(?<!counter[ -])(?<!anti)(?<!anti[ -])\bclockwise\b"
     r"|\bim\s+uhrzeigersinn\b|顺时针"
     r"|(?<!no )(?<!assume )\bsmall[- ](?:angles?|q\b|motions?|rotations?)"
@@ -99,6 +100,7 @@ _OTHERWISE = re.compile(
     r"|大约|大概|およそ|約(?=\d)"
     r"|\bnot\s+(?:yet\s+)?(?:been\s+)?(?:checked|verified|tested|finished|complete)\b"
     r"|\bvorzeichen\s+(?:\w+\s+){0,3}(?:umgekehrt|falsch|vertauscht)\b"
+    r"|\bnicht\s+(?:das|die|der|den)\s+gesuchte\w*|\b(?:das|die)\s+negative\s+davon\b"
     r"|\bnicht\s+(?:die|das|der|den)\s+(?:der|des|von|vom)\b|\bnot\s+(?:that|the\s+one|those)\s+of\b"
     r"|未验证|未検証|\bdas\s+doppelte\b|\bdie\s+hälfte\b|\b(?:la\s+)?moitié\b"
     r"|\b(?:el|il|le)\s+(?:doble|doppio|double)\b"
@@ -161,7 +163,9 @@ def without_words(text: str, entry: str, place: str) -> str:
 
 
 _COMMENTS = re.compile(
-    r"(?<![:/])//(?!=)([^\n]{1,200})|/\*(.{1,200}?)\*/|\(\*(.{1,200}?)\*\)", re.DOTALL
+    r"(?<![:/])//(?!=)([^\n]{1,200})|/\*(.{1,200}?)\*/|\(\*(.{1,200}?)\*\)"
+    r"|(?:^|[ \t\n])#(?![\d{])([^\n]{1,200})",
+    re.DOTALL,
 )
 
 
@@ -199,6 +203,14 @@ _NOUN = {
     ),
 }
 """What quantities are called, as far as a sentence says of a formula that it is that."""
+_ENERGY = (
+    r"(?:total|whole|mechanical)\s+energy|gesamtenergie|总能量|机械能"
+    r"|énergie\s+(?:totale|mécanique)"
+)
+_SAYS_BEHIND = (
+    r"(?:^|[^\w]|\b(?:this|that|it|which|das|dies|und|sondern|这|ce|c['’]))\s*"
+    r"(?:is|ist|sondern|是|est)\s+(?:the\s+|die\s+|das\s+|der\s+|l['’])?(?:{noun})"
+)
 _SAYS = (
     r"(?:^|[.;。\n])\s*(?:(?:the|our|its|die|das|der|la|l['’])\s+)?(?:{noun})"
     r"(?:\s+(?:is|are|reads|ist|lautet|est|vaut|becomes)|\s*[:：为是])?(?:\s+given\s+by)?\s*[:：]?\s*$"
@@ -209,6 +221,10 @@ def _of_another_quantity(text: str, entry: str) -> str:
     """Words right in front of a formula that say of it that it is another quantity."""
     head = re.split(r"[\d\[]", entry)[0]
     others = {names: noun for names, noun in _NOUN.items() if head not in names.split()}
+    behind = _FORMULA.split(text)[-1]
+    for noun in (*others.values(), _ENERGY):
+        if found := re.search(_SAYS_BEHIND.format(noun=noun), behind, re.IGNORECASE):
+            return found[0].strip(" .;。\n)")
     if len(others) == len(_NOUN):
         return ""  # of what it is asked for nobody has a noun here
     front = _NAME_BEHIND.sub("", _FORMULA.split(text)[0]).rstrip("$ \\")

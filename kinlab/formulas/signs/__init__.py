@@ -10,6 +10,7 @@ module        what it holds
 ``latex``     LaTeX of the textbooks as plain arithmetic text, which the whitelist parser then
               reads
 ``letters``   Letters and signs of Unicode as plain text or LaTeX
+``macros``    Commands that a writer has made: ``\\newcommand{\\q}{\\theta}``
 ``named``     What books call entries of quantities that have a long name: x_2, y_{c2}, J_v
 ``refusals``  What is said of a formula that cannot be read, in the language of the reader
 ``remarks``   What stands beside a formula and says nothing of its value: tags, units, words, old

@@ -229,6 +229,47 @@ def _is_another_jacobian(left: str, entry: str, last: LastJoint) -> bool:
     return bool(frame) and frame != "0"
 
 
+_BY_JOINT = r"(?:q|th|theta|\\theta|θ|\\vartheta|\\varphi)_?\{?(?P<k>\d)\}?"
+_OF_WHAT = (
+    r"(?P<what>[VUPxyz]|E_?\{?p\w{0,2}\}?)"
+    r"(?:_?\{?(?:[cCgGsS]_?\{?)?(?P<link>\d)\}{0,2}|_\{?(?:e|E|ee|tcp|n)\}?)?"
+)
+_PARTIAL = r"(?:∂|\\partial|\\mathrm\{d\}|d)"
+_SLOPE = re.compile(
+    rf"(?:\\[dt]?frac\{{{_PARTIAL}{_OF_WHAT}\}}\{{{_PARTIAL}{_BY_JOINT}\}}"
+    rf"|{_PARTIAL}{_OF_WHAT.replace('?P<what>', '?P<a>').replace('?P<link>', '?P<b>')}"
+    rf"/{_PARTIAL}{_BY_JOINT.replace('?P<k>', '?P<c>')})"
+)
+_PLACES_OF = re.compile(r"(gravity_torques|(?:planar_|com_)?jacobians?)\[([\d,\s]+)\]")
+
+
+def is_another_slope(side: str, entry: str) -> bool:
+    r"""Whether a side is the derivative of another coordinate, or by another joint.
+
+    ``\frac{\partial y}{\partial q_2}`` is entry 2, 2 of the Jacobian and no other.
+
+    Args:
+        side: of an equation, as typed.
+        entry: what the formula is asked for.
+    """
+    plain = re.sub(r"\s|\\[,;! ]", "", side.strip("& $"))[:_LONGEST]
+    found, asked = _SLOPE.fullmatch(plain), _PLACES_OF.fullmatch(entry)
+    if found is None or asked is None:
+        return False
+    what, link, joint = (
+        found[x] or found[y] for x, y in (("what", "a"), ("link", "b"), ("k", "c"))
+    )
+    places = [int(k) + 1 for k in asked[2].split(",")]
+    if asked[1] == "gravity_torques":
+        return what in "xyz" or places != [int(joint)]
+    if what not in "xyz":
+        return True
+    row = ["xyz".index(what) + 1, int(joint)]
+    if asked[1] == "com_jacobians":
+        return places[1:] != row or link != str(places[0])
+    return places != row
+
+
 def is_another(left: str, entry: str, last: LastJoint) -> bool:
     r"""Whether a left side is another pose than the tool's in the base, or another Jacobian.
 

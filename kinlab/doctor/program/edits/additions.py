@@ -79,6 +79,8 @@ _INSIDE = 0.06
 """What a product of the program costs more as a term of what is turned."""
 _SIGNED = 1.1
 """Cost of a sign that has a name for a term without."""
+_OF_NOTHING = 0.06
+"""What a term costs more beside a name that is always nought: the name is another."""
 _REST = 1.08
 """Cost of ``1 - x`` for a share x."""
 _THRICE = 3
@@ -385,7 +387,8 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
     beside = _factors_beside(here) if term else set()
     dot = isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult)  # (v @ u)**2
     dot = dot or (isinstance(node, ast.Call) and called(node) in ("dot", "norm", *scope.called))
-    if (isinstance(node, ENTRIES) or dot) and not power and (operated or term):
+    negated = isinstance(parent, ast.UnaryOp)  # -w*l
+    if (isinstance(node, ENTRIES) or dot) and not power and (operated or term or negated):
         yield here.instead(ast.BinOp(node, ast.Pow(), number(2)), "power", 1.08)
     yield from _squares_and_products(here, scope)
     if term:
@@ -571,6 +574,8 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
     siblings = scope.addends.get(stem, set()) if whole else set()
     turned = isinstance(here.parent, ast.BinOp) and isinstance(here.parent.op, ast.MatMult)
     turned = turned and here.field == "right" and len(shape) == 1
+    seen = scope.observed.of(node)
+    zero = _OF_NOTHING if isinstance(node, ast.Name) and seen is not None and seen.nothing else 0.0
     if shape == ():
         across = (scope.addends.get(one, set()) for one in _of_the_other_axis(stem))
         yield from _turned_terms(here, scope, siblings.union(*across if whole else ()))
@@ -590,8 +595,10 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
             continue
         near = _BESIDE if text in siblings else _INSIDE if inside else 1.0
         dear = min(scope.dear(piece), near)
-        more = 0.0 if follow(node, piece) else dear  # m4 behind m3
-        for op, cost in ((ast.Add(), 1.06 + more), (ast.Sub(), 1.08 + dear)):
+        follows = follow(node, piece)
+        more = 0.0 if follows and not zero else dear + zero  # m4 behind m3
+        less = 0.0 if follows and entry else dear  # tau[2] beside tau[1], in a row of differences
+        for op, cost in ((ast.Add(), 1.06 + more), (ast.Sub(), 1.08 + less)):
             yield here.instead(ast.BinOp(node, op, piece), "missing term", cost)
         if one:
             yield here.instead(ast.BinOp(piece, ast.Sub(), node), "missing term", 1.1)

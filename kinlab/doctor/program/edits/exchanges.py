@@ -11,11 +11,14 @@ from kinlab.doctor.bytecode.syntax import called, copied, names, nodes, text_of
 from kinlab.doctor.program.edits.chains import SUMS, chain, joined, opposite
 from kinlab.doctor.program.edits.scope.forms import Turned
 from kinlab.doctor.program.edits.scope.part import Scope
+from kinlab.doctor.program.edits.single.entries import without_the_first
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, follow, number
 
 _ANGLES = 1.13
 """Cost of the joint before in every angle of a statement."""
+_OF_ROWS = 1.15
+"""Cost of one row for another wherever a statement reads it."""
 _TURNED = 1.02
 """Cost of a rotation in the plane the other way: ``c*x + s*y, -s*x + c*y``."""
 _MOST = 6
@@ -31,6 +34,7 @@ def of_statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
     for node in nodes(value):
         if isinstance(node, ast.Name | ast.Subscript) and _plain(node):
             uses.setdefault(ast.unparse(node), []).append(node)
+    yield from _rows_throughout(here, value)
     shapes: dict[str, Shape | None] = {}
     for text, found in uses.items():
         shapes[text] = observed.shape(found[0])
@@ -56,9 +60,12 @@ def of_statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
                         new = Renamed({text: angle}).of(value)
                         yield here.within(here.node, "value", new, "argument", _ANGLES)
             for other, node in scope.simple(shapes[text] or ()):
-                if other != text and other[0] == text[0] and other not in uses:
+                alike = other[0] == text[0]
+                # q[j] - q[k] of p[j] - p[k]
+                row = bool(shapes[text]) and isinstance(node, ast.Name)
+                if other != text and (alike or row) and other not in uses:
                     new = Renamed({text: node}).of(value)
-                    yield here.within(here.node, "value", new, "name", 1.14)
+                    yield here.within(here.node, "value", new, "name", 1.14 if alike else _OF_ROWS)
     for text in names if isinstance(value, ast.Tuple | ast.List) and len(value.elts) == 2 else ():
         turned = [_with_the_other_sign(one, text) for one in value.elts] if not shapes[text] else []
         elts = [one for one in turned if one is not None]
@@ -68,6 +75,22 @@ def of_statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
     count = sum(isinstance(n, ast.Call) and called(n) in ANGLES for n in nodes(value))
     if turns and count > 1:
         yield here.within(here.node, "value", Turned().visit(copied(value)), "sin/cos", 1.1)
+
+
+def _rows_throughout(here: Here, value: ast.expr) -> Iterator[ProgramEdit]:
+    """All but the first for all but the last, in every place of a statement: ``R[:6]``."""
+    cut: dict[str, list[ast.Subscript]] = {}
+    for node in nodes(value):
+        if isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Slice):
+            cut.setdefault(text_of(node), []).append(node)
+    for text, found in cut.items():
+        key = found[0].slice
+        assert isinstance(key, ast.Slice)
+        moved = without_the_first(key)
+        if len(found) > 1 and moved is not None:
+            other = ast.Subscript(found[0].value, moved, ast.Load())
+            new = Renamed({text: other}).of(value)
+            yield here.within(here.node, "value", new, "index", 1.1)
 
 
 def _with_the_other_sign(node: ast.expr, name: str) -> ast.expr | None:

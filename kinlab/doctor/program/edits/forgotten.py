@@ -474,8 +474,9 @@ def _of_idle_points(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
         return
     for _text, point in scope.simple(_HOMOGENEOUS):
         if scope.is_idle(point):
-            moved = ast.BinOp(node.value, ast.MatMult(), point)
             rows = ast.Slice(None, number(_VECTOR[0]), None)
+            yield here.instead(ast.Subscript(point, rows, ast.Load()), "name", 1.04)
+            moved = ast.BinOp(node.value, ast.MatMult(), point)
             yield here.instead(ast.Subscript(moved, rows, ast.Load()), "missing matrix", 1.06)
     for _text, point in scope.simple(_VECTOR):
         if scope.is_idle(point):

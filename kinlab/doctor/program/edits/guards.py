@@ -14,6 +14,7 @@ _GUARDED = 1.08
 """What it costs that a term counts for some joints only."""
 _CHOICE = 3
 """Arguments of ``np.where``."""
+_VECTOR = (3,)
 
 
 def masks(tree: ast.AST) -> dict[str, ast.expr]:
@@ -47,16 +48,15 @@ def of_guards(
         tests: what numbers are chosen by.
     """
     node, shape = here.node, observed.shape(here.node)
+    if shape == _VECTOR and isinstance(here.parent, ast.Assign) and here.field == "value":
+        yield from _of_columns(here, scope, tests)
     if not isinstance(getattr(here.parent, "op", None), ast.Add | ast.Sub) or shape is None:
         return
     if not isinstance(node, ast.Name | ast.Subscript | ast.Attribute | ast.Call):
         return
     nothing = ast.Constant(0)
     if shape == ():
-        inside = {*scope.shapes, *scope.counting}
-        own = {text: one for text, one in tests.items() if inside.issuperset(names(one))}
-        own |= {ast.unparse(one): one for one in scope.tests_here()}
-        for test in own.values():
+        for test in _tests_here(scope, tests):
             for both in ((nothing, node), (node, nothing)):
                 yield here.instead(ast.IfExp(test, *both), "condition", _GUARDED)
     elif len(shape) == 1 and scope.has_numpy:
@@ -65,3 +65,25 @@ def of_guards(
             for first, last in ((nothing, node), (node, nothing)):
                 chosen = ast.Call(where, [mask, first, last], [])
                 yield here.instead(chosen, "condition", _GUARDED)
+
+
+def _tests_here(scope: Scope, tests: dict[str, ast.expr]) -> list[ast.expr]:
+    """Of the conditions by which numbers are chosen those that may stand there, and others."""
+    inside = {*scope.shapes, *scope.counting}
+    own = {text: one for text, one in tests.items() if inside.issuperset(names(one))}
+    return [*(own | {ast.unparse(one): one for one in scope.tests_here()}).values()]
+
+
+def _of_columns(here: Here, scope: Scope, tests: dict[str, ast.expr]) -> Iterator[ProgramEdit]:
+    """A column of a Jacobian for a hinge or a slide alone: ``J[3:, i] = 0 if slides[i] else z``."""
+    target = here.above[-1].targets[0] if isinstance(here.above[-1], ast.Assign) else None
+    if not isinstance(target, ast.Subscript) or isinstance(here.node, ast.IfExp):
+        return
+    own = ast.unparse(here.node)
+    axes = [one for text, one in scope.simple(_VECTOR) if text != own and text in own]
+    others = [ast.Constant(0), *(one for one in axes if isinstance(one, ast.Name))]
+    decided = {ast.unparse(one.test) for one in here.above if isinstance(one, ast.If)}
+    for test in (one for one in _tests_here(scope, tests) if ast.unparse(one) not in decided):
+        for other in others:
+            for both in ((other, here.node), (here.node, other)):
+                yield here.instead(ast.IfExp(test, *both), "condition", _GUARDED)

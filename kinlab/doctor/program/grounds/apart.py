@@ -443,6 +443,9 @@ class _Reader:
         if ends:
             return True, ends
         left = [k for k in may if self.cells[k].kind in kinds]
+        here = [k for k in may if link in self.cells[k].links and self.cells[k].kind == "centre"]
+        if here and kinds == ("length",) and not any(link in self.cells[k].links for k in left):
+            left = here  # l1 is another link's length, and this one's way to its centre
         sure = bool(left)
         left = left or may
         if link is not None and (sure or data):  # the text's rows may be those of a matrix

@@ -6,11 +6,12 @@ import ast
 from collections.abc import Iterator, Sequence
 from collections.abc import Set as AbstractSet
 from itertools import combinations
+from typing import TypeGuard
 
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import called, copied, names, text_of
+from kinlab.doctor.bytecode.syntax import called, copied, names, nodes, text_of
 from kinlab.doctor.program.edits.additions import OtherName
 from kinlab.doctor.program.edits.scope.forms import statement_of, summands
 from kinlab.doctor.program.edits.scope.part import Scope, standing
@@ -29,6 +30,10 @@ _IDLE, _USED = 1.06, 1.17
 """What a term is far-fetched with a name that is used nowhere else, and without one."""
 _CROSSED = 1.1
 """The same of a product of two vectors with such a name, of which no dimension is known."""
+_TRANSPORTED = 1.08
+"""The same of a cross product with a rate about an axis, where the axis stands in the sum."""
+_HIDDEN = 0.12
+"""What that costs less where a unit vector for qdd hides the dimension of the sum."""
 _COPIED = 0.02
 """What it is likelier beside what is only another name for something: ``n3 = ni``."""
 _NEXT = 0.98
@@ -102,16 +107,50 @@ def _of_dimension(
     for term in _terms(scope, shape):
         made, idle = known.of_made(term), scope.uses_idle(term)
         told = None if size is None or made is None else abs(made - size)
-        if (told is None and not idle) or text_of(term) in own:
+        transported = _is_transported(term, here)
+        if (told is None and not idle and not transported) or text_of(term) in own:
             continue
-        if told is None or told <= TOLERANCES.tried_further:
+        if told is None or told <= TOLERANCES.tried_further or transported:
             sure, crossed = told is not None or zeros, isinstance(term, ast.Call)
             cost = _IDLE if idle and sure else _CROSSED if idle and crossed else _USED
+            if transported:
+                hidden = told is not None and told > TOLERANCES.tried_further
+                cost = _TRANSPORTED - _HIDDEN * hidden
             cost -= _COPIED * (crossed and isinstance(here.node, ast.Name))
             found.append((cost, term))
     found.sort(key=lambda one: one[0])
     for cost, term in found[: _MOST if size is not None or zeros else _FEW]:
         yield here.instead(ast.BinOp(here.node, ast.Add(), term), "missing term", cost)
+
+
+def _is_transported(term: ast.expr, here: Here) -> bool:
+    """Whether a term is ``cross(w, qd*z)``, the sum has ``qdd*z``, and w a line with ``qd*z``.
+
+    The sum may be asked of a unit vector for qdd, which has no dimension.
+    """
+    if not isinstance(term, ast.Call) or not _is_scaled(term.args[-1]):
+        return False
+    turning, rate = map(text_of, term.args)
+    axes = [text_of(one.right) for one in summands(here.node) if _is_scaled(one)]
+    lines = [one for one in nodes(here.above[0]) if isinstance(one, ast.Assign | ast.AugAssign)]
+    sums = (one.value for one in lines if turning in map(text_of, _targets(one)))
+    return text_of(term.args[-1].right) in axes and any(
+        rate in map(text_of, summands(one)) for one in sums
+    )
+
+
+def _targets(line: ast.Assign | ast.AugAssign) -> list[ast.expr]:
+    return line.targets if isinstance(line, ast.Assign) else [line.target]
+
+
+def _is_scaled(node: ast.expr) -> TypeGuard[ast.BinOp]:
+    """Whether it is a number times a vector: ``qd[i]*z``."""
+    return (
+        isinstance(node, ast.BinOp)
+        and isinstance(node.op, ast.Mult)
+        and isinstance(node.left, ast.Name | ast.Subscript | ast.Attribute)
+        and isinstance(node.right, ast.Name | ast.Subscript | ast.Attribute)
+    )
 
 
 def _of_matrices(
@@ -213,6 +252,7 @@ def _terms(scope: Scope, shape: Shape) -> Iterator[ast.expr]:
             yield ast.BinOp(scalar, ast.Mult(), vector)
     if shape == _VECTOR and scope.cross is not None:
         turned = [one for one in pieces.values() if _is_turned(one)][:_MADE]
+        turned += [one for one in pieces.values() if _is_scaled(one)][:_MADE]
         for arm in (*vectors, *typed):
             for other in (*vectors, *turned):
                 if other is not arm:

@@ -102,13 +102,17 @@ class Asked:
         return any(steps) or any("eps" in word or word == "finfo" for word in words)
 
     def _add_a_wrong_one(self) -> None:
-        """Sees to it that the program as it is fails at the first states, if it does anywhere."""
+        """Sees to it that the program as it is fails at the first states, if it does anywhere.
+
+        Where one state has numbers enough, it is the one at which it does.
+        """
         if self.case.hand.shape != self.wanted.shape:
             return
         errors = relative_errors(self.case.hand, self.wanted)
         clearly = errors > _CLEARLY * np.max(errors)
         if clearly.any() and not clearly[self.first].any():
-            self.first.append(int(np.argmax(clearly)))
+            others = self.first if len(self.first) > 1 else []
+            self.first = [*others, int(np.argmax(clearly))]
 
     def _add_another_branch(self) -> None:
         """Sees to it that the signs of a branch are not all alike at each of the first states.

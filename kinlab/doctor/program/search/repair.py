@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import beginning, called, copied, nodes, pieces
+from kinlab.doctor.bytecode.syntax import beginning, called, copied, nodes, pieces, text_of
 from kinlab.doctor.changes import Case, table_of
 from kinlab.doctor.glossary.linkage import linkage_meanings
 from kinlab.doctor.glossary.textbook import Glossary, meanings, without_base
@@ -262,6 +262,7 @@ class LineSearch:
                     doubted = doubted or self.evidence.coincident(edit)
             found = found or ([] if self.stand else self.parallel[:1])
             found = self._by_name(self._by_evidence(found))
+            found = [self.as_it_is_named(one) for one in found[:1]] + found[1:]
             if not self.stand or below < np.inf:
                 found = in_company(found, self.likely, SAME, self.trial, _beside)
             found = self._beside_data(found)
@@ -418,6 +419,33 @@ class LineSearch:
             if near and id(one.node) in values and self.left_right(other.edits[-1:]) > right:
                 return other
         return first
+
+    def as_it_is_named(self, repair: ProgramRepair) -> ProgramRepair:
+        """The same with the name to which what is put in was set before: ``Ia`` for its sum."""
+        own = repair.edits[len(self.stand) :]
+        for k, edit in enumerate(own):
+            other = self._named(edit)
+            if other is None:
+                continue
+            several = (*own[:k], other, *own[k + 1 :])
+            with changed(self.trial, several):
+                named = self.verdict((*self.stand, *several))
+            if named is not None:
+                return self.as_it_is_named(replace(named, rivals=repair.rivals))
+        return repair
+
+    def _named(self, edit: ProgramEdit) -> ProgramEdit | None:
+        """The edit that puts a name in for a sum, or a product, to which it was set above."""
+        new = edit.changes[0].new if len(edit.changes) == 1 else None
+        if edit.part == DATA or not isinstance(new, ast.BinOp):
+            return None
+        every = nodes(self.trial.trees[edit.part])
+        for line in (x for x in every if isinstance(x, ast.Assign)):
+            to, before = line.targets[0], line.lineno < getattr(edit.node, "lineno", 0)
+            if before and isinstance(to, ast.Name) and text_of(line.value) == text_of(new):
+                put = (replace(edit.changes[0], new=ast.Name(to.id, ast.Load())),)
+                return replace(edit, changes=put, kind="name")
+        return None
 
     def _by_name(self, found: list[ProgramRepair]) -> list[ProgramRepair]:
         """The name for a factor that it has as its value, where no other arm tells them apart."""

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from types import FunctionType
 from typing import Any
 
+import numpy as np
+
 from kinlab.doctor.program.grounds.evidence import Grounds
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit
@@ -28,6 +30,8 @@ _HEARD = 12
 """Calls of a function of which it is kept what it was asked."""
 _LONGEST = 12
 """Values of one answer that are looked at."""
+_STEP = 0.02
+"""How far from the state itself, of its size or of 1, the states of a difference are."""
 
 Ranks = list[int | None]
 
@@ -66,10 +70,12 @@ class Units:
         self.before: dict[int, Ranks] = {}
         if not self.known.anything or len(self.trial.trees) == 1:
             return
-        for k, unit in _asked_often(self.trial, asked.states[0]).items():
-            ranks = self._ranks(unit)
-            if 0 in ranks:
-                self.wrong[k], self.before[k] = unit, ranks
+        for k, units in _asked_often(self.trial, asked.states[0]).items():
+            for unit in units:
+                ranks = self._ranks(unit)
+                if 0 in ranks:
+                    self.wrong[k], self.before[k] = unit, ranks
+                    break
         self.known.beside(observed.values(len(asked.watched)))
 
     def repairs(self, edits: Sequence[ProgramEdit], most: int) -> list[ProgramEdit]:
@@ -116,11 +122,11 @@ class Units:
         return [self.known.rank(one) for one in (answer if apart else [answer])[:_LONGEST]]
 
 
-def _asked_often(trial: Trial, state: tuple[Any, ...]) -> dict[int, Unit]:
-    """The functions that are asked often at one state, by their numbers, each with what it is asked
-    in between.
+def _asked_often(trial: Trial, state: tuple[Any, ...]) -> dict[int, list[Unit]]:
+    """The functions that are asked often at one state, by their numbers, with what they are asked.
 
-    Newton-Euler for the columns of M is asked for the bias first, where more may be wrong.
+    What one is asked in between comes first: Newton-Euler for the columns of M is asked for the
+    bias as well, where more may be wrong.
     """
     heard: dict[int, list[tuple[tuple[Any, ...], dict[str, Any]]]] = {}
     counts: dict[int, int] = {}
@@ -147,8 +153,32 @@ def _asked_often(trial: Trial, state: tuple[Any, ...]) -> dict[int, Unit]:
     finally:
         for k, function in enumerate(originals):
             trial.place(k, function)
-    return {
-        k: Unit(k, *calls[len(calls) // 2], counts[k])
-        for k, calls in heard.items()
-        if calls and counts[k] >= _OFTEN
-    }
+    found: dict[int, list[Unit]] = {}
+    for k, calls in heard.items():
+        if calls and counts[k] >= _OFTEN:
+            between = calls.pop(len(calls) // 2)
+            asked = [_at_the_state(*one, state) for one in (between, *calls)]
+            found[k] = [Unit(k, *one, counts[k]) for one in asked]
+    return found
+
+
+def _at_the_state(
+    given: tuple[Any, ...], named: dict[str, Any], state: tuple[Any, ...]
+) -> tuple[tuple[Any, ...], dict[str, Any]]:
+    """What a function was asked beside a state, for a difference, at that state itself.
+
+    What a textbook has is known there.
+    """
+    own = [np.asarray(one, dtype=float) for one in state]
+
+    def itself(value: Any) -> Any:
+        array = as_numbers(value) if isinstance(value, list | tuple | np.ndarray) else None
+        if array is None or not array.size:
+            return value
+        for one in own:
+            reach = _STEP * max(1.0, float(np.abs(one).max(initial=0.0)))
+            if one.shape == array.shape and float(np.abs(array - one).max()) <= reach:
+                return one.copy() if isinstance(value, np.ndarray) else [*map(float, one)]
+        return value
+
+    return tuple(map(itself, given)), {name: itself(one) for name, one in named.items()}

@@ -72,6 +72,8 @@ _TURNS = 3
 """Edits of one repair that are exchanged for likelier ones."""
 _RESTING = 2
 """And the part for asking it at rest."""
+_RIGHT_AT_REST = 3
+"""Edits that are right at rest beside which others are looked for."""
 _STEPPING = 4
 """And the part for the search beside the likeliest first edit."""
 _DEEPEST = 2
@@ -101,6 +103,7 @@ def several(search: LineSearch) -> list[ProgramRepair]:
         found = looking.of_fewer(
             search, [_reduced(repair, search) for repair in looking.found(search)]
         )
+        found = [search.as_it_is_named(one) for one in found[:1]] + found[1:]
     if getattr(search.case.robot, "n", 0) == 1:  # two terms, which any three edits make right
         found = [one for one in found if len(one.edits) <= _DEEPEST]
     return found or _right_here(search)
@@ -265,6 +268,10 @@ class _Several:
         found = found or self._one_more(search, stages.reached[: _WAYS + 1], _REACHED)[0]
         if found:
             return self.settled(search, found)
+        wider = self._where_parts_are_silent(search, known)
+        found = [] if wider is None else self._after(search, wider[0])
+        if found:
+            return found
         most = 1 if together.thorough else _STEPS - 1
         firsts = in_order.reached[:most]
         if not firsts:
@@ -276,8 +283,7 @@ class _Several:
             return found
         joined = known
         if not together.thorough:
-            wider = AtRest(search).effects(known, search.most // _RESTING) if search.wide else None
-            joined = known if wider is None else known.beside(wider)
+            joined = known if wider is None else known.beside(wider[1])
             found = self.settled(search, tried.likeliest(joined, joined.pairs()))
         if not found:
             most = 1 if together.thorough else _STEPS
@@ -292,6 +298,17 @@ class _Several:
                 found = tried.likeliest(joined, joined.triples())
             found = self.settled(search, found)
         return found
+
+    @staticmethod
+    def _where_parts_are_silent(
+        search: LineSearch, known: Effects
+    ) -> tuple[list[Way], Effects] | None:
+        """The likeliest edits that are right at rest, or with one motion alone; and all effects."""
+        resting = AtRest(search)
+        there = resting.effects(known, search.most // _RESTING) if search.wide else None
+        if there is None:
+            return None
+        return [(one,) for one in _apart(resting.making_right(there))[:_RIGHT_AT_REST]], there
 
     @staticmethod
     def _plain(search: LineSearch, tried: _Tried) -> list[ProgramRepair]:

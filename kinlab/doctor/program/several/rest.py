@@ -90,6 +90,21 @@ class AtRest:
             alike, np.array(rows).reshape(len(rows), own.size), own, goal, known.near, known.likely
         )
 
+    def making_right(self, there: Effects) -> list[ProgramEdit]:
+        """The edits with which the answer is right at rest, or what a motion alone adds to it.
+
+        Those that make most of these right come first.
+
+        Args:
+            there: the effects of edits there.
+        """
+        blocks = len(self.goal)
+        wrong = there.wrong.reshape(blocks, -1).any(axis=1)
+        right = there.right.reshape(len(there.alike), blocks, -1).all(axis=2)
+        gains = (right & wrong).sum(axis=1) * (right | wrong).all(axis=1)
+        some = np.flatnonzero(gains)
+        return [there.alike[k][0] for k in some[np.lexsort((there.costs[some], -gains[some]))]]
+
 
 def moving_alone(arguments: dict[str, Array], some: Sequence[str]) -> dict[str, Array]:
     """The same states where of all that moves, or pushes, there are some arguments alone."""

@@ -6,7 +6,7 @@ import ast
 from collections.abc import Iterator
 from itertools import combinations
 
-from kinlab.doctor.bytecode.syntax import called, names, nodes
+from kinlab.doctor.bytecode.syntax import called, names, nodes, pieces, text_of
 from kinlab.doctor.program.edits import chains
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.operators import DIAGONALS
@@ -21,6 +21,10 @@ _ARGUMENTS, _APART = 4, 0.03
 """The same of arguments; what it costs more of those that do not stand side by side."""
 _ARCS = ("arcsin", "asin", "arccos", "acos")
 """Functions that do not tell the quadrant."""
+_BACKWARDS = 0.97
+"""Cost of the other order of a cross product that is the other way about than all write it."""
+_LOADS = ("f", "F")
+"""How names of forces begin, whose lever stands in front of them."""
 _LED = 1.01
 """Cost of a difference the other way, which an axis or a rate is crossed with."""
 _QUADRANT = 0.99
@@ -120,10 +124,12 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
             swapped = [*plain]
             swapped[i], swapped[j] = swapped[j], swapped[i]
             less = isinstance(getattr(plain[1], "op", None), ast.Sub)
-            if less and scope.crosses(node) and not isinstance(plain[0], ast.BinOp):
+            load = text_of(plain[0]).startswith(_LOADS)
+            if less and scope.crosses(node) and not isinstance(plain[0], ast.BinOp) and not load:
                 turned = [plain[0], chains.opposite(plain[1])]
                 yield here.within(node, "args", turned, "sign", _LED)
             cost = 1.02 if scope.crosses(node) else 1.05 if name in _ORDERED else 1.15
+            cost = _BACKWARDS if scope.crosses(node) and _is_backwards(*plain[:2]) else cost
             yield here.within(node, "args", swapped, "order", cost + _APART * (j > i + 1))
         if name in ("arctan2", "atan2") and len(plain) == 2:
             for one in (0, 1):  # the angle from the other axis
@@ -145,6 +151,15 @@ def _whole_arc(node: ast.Call, scope: Scope, name: str) -> ast.expr | None:
     if isinstance(node.func, ast.Attribute):
         return ast.Attribute(node.func.value, whole, ast.Load())
     return ast.Name(whole, ast.Load()) if callable(scope.space.get(whole)) else None
+
+
+def _is_backwards(one: ast.expr, other: ast.expr) -> bool:
+    """Whether it is ``cross(I @ w, w)``, or ``cross(cross(w, r), w)``."""
+    simple = isinstance(other, ast.Name | ast.Attribute | ast.Subscript)
+    made = isinstance(one, ast.Call | ast.BinOp) and not isinstance(
+        getattr(one, "op", None), ast.Add | ast.Sub
+    )
+    return simple and made and text_of(other) in map(text_of, pieces(one))
 
 
 def _of_both_sides(here: Here, scope: Scope, name: str) -> Iterator[ProgramEdit]:

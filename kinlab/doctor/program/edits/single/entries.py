@@ -187,8 +187,17 @@ def _moved(here: Here, holder: Any, field: Any, key: ast.Slice) -> Iterator[Prog
     """All but the first for all but the last, and the other way round."""
     if key.upper is None and key.lower is not None and ast.unparse(key.lower) == "1":
         yield here.within(holder, field, ast.Slice(None, number(-1), None), "index", 1.08)
-    elif key.lower is None and key.upper is not None and ast.unparse(key.upper) == "-1":
-        yield here.within(holder, field, ast.Slice(number(1), None, None), "index", 1.08)
+    elif (moved := without_the_first(key)) is not None:
+        yield here.within(holder, field, moved, "index", 1.08)
+
+
+def without_the_first(key: ast.Slice) -> ast.Slice | None:
+    """All but the first for all but the last: ``1:`` for ``:-1``, or for ``:6`` of seven."""
+    if key.lower is not None or key.upper is None:
+        return None
+    last = ast.unparse(key.upper)
+    more = last == "-1" or (last.isdigit() and int(last) > 1)
+    return ast.Slice(number(1), None, None) if more else None
 
 
 def _beside(key: ast.Slice) -> ast.Slice | None:

@@ -28,6 +28,8 @@ _HALF = 1.03
 """Cost of a length for the distance of the centre, where that is half of it, or that for it."""
 _COUNTERS = 1.08
 """Cost of one loop's counter for another's."""
+_NUMBERED = 1.07
+"""Cost of a name for another that differs from it by a number."""
 _IN_LINE = 1.12
 """Cost of a name for another that stands in the same line."""
 
@@ -53,6 +55,7 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
             kind = "index" if near and _letters(other) == _letters(node.id) else "name"
             beside = other in scope.beside.get(node.id, ())
             cost = 1.1 if near else 1.14 if beside else 1.25
+            cost = _NUMBERED if kind == "index" and node.id[-1].isdigit() else cost
             if cost > _IN_LINE and other in scope.names_in(statement_of(here.above)):
                 cost = _IN_LINE  # of what stands in one line one is taken for another
             if scope.are_halves(other, node.id):

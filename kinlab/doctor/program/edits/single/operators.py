@@ -18,6 +18,8 @@ _THREE = 3
 """Factors from which on the rest of a product stays."""
 _PAIR = 2
 """Sides of a matrix, factors that change places, arguments with a diagonal."""
+_ROWS = 1.12
+"""Cost of a row times a matrix for the matrix times a column."""
 _HALVES, _TYPED = (2, 0.5), 1.045
 """Factors that stand in front, and the cost of one that does not belong there."""
 _TAKEN = 1.04
@@ -101,7 +103,8 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             yield here.instead(kept, "extra factor", _TYPED if typed else cost)
         if isinstance(op, ast.MatMult):
             swapped = chains.exchanged(node, lambda one: observed.shape(one) == ())
-            yield here.instead(swapped, "order", 1.06)
+            upright = len(matrices[1] or ()) == 1 < len(matrices[0] or ())  # whose R.T is meant
+            yield here.instead(swapped, "order", _ROWS if upright else 1.06)
             sizes = observed.shape(node) or (0,)
             twice = _halved(node) if len(sizes) == _PAIR and sizes[0] == sizes[1] else None
             if twice is not None:  # A + A.T for 2*A

@@ -1,0 +1,259 @@
+"""One slip in all places of a statement, and others that stand in one word of it.
+
+Every program is right before the slip; what is said makes it right, and is what was there.
+"""
+
+from __future__ import annotations
+
+import pytest
+from hand_programs import asked, with_slips, written
+
+import kinlab as kl
+
+STANFORD = """
+import numpy as np
+slides = [0, 0, 1, 0, 0, 0]
+theta0 = [0, 0, -np.pi/2, 0, 0, 0]
+d0 = [0.412, 0.154, 0, 0, 0, 0.263]
+a0 = [0, 0, 0.0203, 0, 0, 0]
+alpha0 = [-np.pi/2, np.pi/2, 0, -np.pi/2, np.pi/2, 0]
+
+def f(q):
+    frames = [np.eye(4)]
+    for k in range(6):
+        th = theta0[k] + (0 if slides[k] else q[k])
+        d = d0[k] + (q[k] if slides[k] else 0)
+        c, s, ca, sa = np.cos(th), np.sin(th), np.cos(alpha0[k]), np.sin(alpha0[k])
+        frames.append(frames[-1] @ np.array([[c, -s*ca, s*sa, a0[k]*c], [s, c*ca, -c*sa, a0[k]*s],
+                                             [0, sa, ca, d], [0, 0, 0, 1]]))
+    J = np.zeros((6, 6))
+    for k in range(6):
+        axis, at = frames[k][:3, 2], frames[k][:3, 3]
+        J[:3, k] = axis if slides[k] else np.cross(axis, frames[6][:3, 3] - at)
+        J[3:, k] = 0 if slides[k] else axis
+    return J
+"""
+ENERGY = """
+import numpy as np
+
+def f(q, qd):
+    m, l = np.array([3.0, 2.0, 1.0]), np.array([0.5, 0.4, 0.25])
+    phi, w = np.cumsum(q), np.cumsum(qd)
+    T = 0.0
+    for i in range(3):
+        arm = np.append(l[:i], l[i]/2)
+        for j in range(i + 1):
+            for k in range(i + 1):
+                T += 0.5*m[i]*arm[j]*arm[k]*np.cos(phi[j] - phi[k])*w[j]*w[k]
+        T += m[i]*l[i]**2/24*w[i]**2
+    return T
+"""
+STACKED = """
+import numpy as np
+A, ALPHA = np.array([0, 0.45, 0.35]), np.array([0, 0, np.pi/2])
+MASS = np.array([3.0, 2.0, 1.2])
+COM = np.array([[0.2, 0.02, -0.01], [0.15, -0.01, 0.03], [0.12, 0.03, 0.01]])
+TENSOR = np.array([np.diag([0.02, 0.08, 0.07]), np.diag([0.01, 0.04, 0.045]),
+                   [[0.004, 0.001, 0], [0.001, 0.012, 0.0005], [0, 0.0005, 0.014]]])
+
+def f(q):
+    R, p = np.zeros((4, 3, 3)), np.zeros((4, 3))
+    R[0] = np.eye(3)
+    for k in range(3):
+        c, s, ca, sa = np.cos(q[k]), np.sin(q[k]), np.cos(ALPHA[k]), np.sin(ALPHA[k])
+        p[k+1] = p[k] + R[k] @ [A[k], 0, 0]
+        R[k+1] = R[k] @ np.array([[c, -s, 0], [s*ca, c*ca, -sa], [s*sa, c*sa, ca]])
+    z = R[1:, :, 2]
+    centre = p[1:] + np.einsum('iab,ib->ia', R[1:], COM)
+    on = np.tril(np.ones((3, 3)))
+    Jw = np.einsum('ij,ja->iaj', on, z)
+    Jv = np.einsum('ij,ija->iaj', on, np.cross(z[None], centre[:, None] - p[None, 1:]))
+    I = np.einsum('iab,ibc,idc->iad', R[1:], TENSOR, R[1:])
+    return np.einsum('i,iaj,iak->jk', MASS, Jv, Jv) + np.einsum('iaj,iab,ibk->jk', Jw, I, Jw)
+"""
+RATES = """
+import numpy as np
+A = (0, 0.45, 0.35)
+MASS = (3.0, 2.0, 1.2)
+COM = ((0.2, 0.02, -0.01), (0.15, -0.01, 0.03), (0.12, 0.03, 0.01))
+TENSOR = (np.diag((0.02, 0.08, 0.07)), np.diag((0.01, 0.04, 0.045)),
+          np.array(((0.004, 0.001, 0), (0.001, 0.012, 0.0005), (0, 0.0005, 0.014))))
+
+def turned(q):
+    R, p, found = np.eye(3), np.zeros(3), []
+    for k in range(3):
+        p = p + R[:, 0]*A[k]
+        if k == 2:
+            R = R @ np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
+        c, s = np.cos(q[k]), np.sin(q[k])
+        R = R @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+        found.append((R, p))
+    return found
+
+def torques(q, v, a, g):
+    w, dw, acc, before = np.zeros(3), np.zeros(3), np.array([0, 0, g]), np.zeros(3)
+    loads, frames = [], turned(q)
+    for k, (R, p) in enumerate(frames):
+        step = p - before
+        acc = acc + np.cross(dw, step) + np.cross(w, np.cross(w, step))
+        z = R[:, 2]
+        dw = dw + a[k]*z + np.cross(w, v[k]*z)
+        w = w + v[k]*z
+        c = R @ COM[k]
+        I = R @ TENSOR[k] @ R.T
+        force = MASS[k]*(acc + np.cross(dw, c) + np.cross(w, np.cross(w, c)))
+        loads.append((p + c, force, I @ dw + np.cross(w, I @ w)))
+        before = p
+    return np.array([R[:, 2] @ sum(n + np.cross(x - p, F) for x, F, n in loads[k:])
+                     for k, (R, p) in enumerate(frames)])
+
+def f(q, v, tau):
+    still = np.zeros(3)
+    M = np.column_stack([torques(q, still, e, 0.0) for e in np.eye(3)])
+    return np.linalg.solve(M, tau - torques(q, v, still, 9.81))
+"""
+STEPS = """
+import numpy as np
+links = [(0.0, 0.0, 3.0, [0.2, 0.02, -0.01], np.diag([0.02, 0.08, 0.07])),
+         (0.45, 0.0, 2.0, [0.15, -0.01, 0.03], np.diag([0.01, 0.04, 0.045])),
+         (0.35, np.pi/2, 1.2, [0.12, 0.03, 0.01],
+          np.array([[0.004, 0.001, 0], [0.001, 0.012, 0.0005], [0, 0.0005, 0.014]]))]
+
+def inner(q, u, v):
+    total, wu, wv, pu, pv = 0.0, np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3)
+    for k, (a, alpha, m, c, I) in enumerate(links):
+        ct, st, ca, sa = np.cos(q[k]), np.sin(q[k]), np.cos(alpha), np.sin(alpha)
+        E = np.array([[ct, -st, 0], [st*ca, ct*ca, -sa], [st*sa, ct*sa, ca]]).T
+        pu, pv = E @ (pu + np.cross(wu, [a, 0, 0])), E @ (pv + np.cross(wv, [a, 0, 0]))
+        wu, wv = E @ wu + [0, 0, u[k]], E @ wv + [0, 0, v[k]]
+        total += m*(pu + np.cross(wu, c)) @ (pv + np.cross(wv, c)) + wu @ I @ wv
+    return total
+
+def mass(q):
+    return np.array([[inner(q, u, v) for v in np.eye(3)] for u in np.eye(3)])
+
+def f(q, qd):
+    h, D = 1e-3, np.zeros((3, 3, 3))
+    for k in range(3):
+        e = h*np.eye(3)[k]
+        D[:, :, k] = (mass(q - 2*e) - 8*mass(q - e) + 8*mass(q + e) - mass(q + 2*e))/(12*h)
+    C = np.zeros((3, 3))
+    for i in range(3):
+        for j in range(3):
+            for k in range(3):
+                C[i, j] += 0.5*(D[i, j, k] + D[i, k, j] - D[j, k, i])*qd[k]
+    return C
+"""
+LINKS = """
+import numpy as np
+
+class Link:
+    def __init__(self, a, l, m, I):
+        self.a, self.l, self.m, self.I = a, l, m, I
+
+ARM = [Link(0.5, 0.25, 3.0, 0.0625), Link(0.4, 0.2, 2.0, 0.08/3), Link(0.25, 0.125, 1.0, 0.0625/12)]
+z = np.array([0.0, 0.0, 1.0])
+
+def f(q):
+    th, at, M = np.cumsum(q), [np.zeros(3)], np.zeros((3, 3))
+    for k, link in enumerate(ARM):
+        at.append(at[-1] + link.a*np.array([np.cos(th[k]), np.sin(th[k]), 0.0]))
+    for k, link in enumerate(ARM):
+        c = at[k] + link.l*np.array([np.cos(th[k]), np.sin(th[k]), 0.0])
+        Jv, Jw = np.zeros((3, 3)), np.zeros((3, 3))
+        for j in range(k + 1):
+            Jv[:, j] = np.cross(z, c - at[j])
+            Jw[:, j] = z
+        M += link.m*Jv.T @ Jv + link.I*Jw.T @ Jw
+    return M
+"""
+ABSOLUTE = """
+import numpy as np
+m1, m2, m3 = 3.0, 2.0, 1.0
+a1, a2, a3 = 0.5, 0.4, 0.25
+
+def f(q, qd, tau):
+    p1, p2, p3 = q[0], q[0] + q[1], q[0] + q[1] + q[2]
+    w1, w2, w3 = qd[0], qd[0] + qd[1], qd[0] + qd[1] + qd[2]
+    k12, k13, k23 = (m2/2 + m3)*a1*a2, m3/2*a1*a3, m3/2*a2*a3
+    A = np.array([[(m1/3 + m2 + m3)*a1**2, k12*np.cos(p1 - p2), k13*np.cos(p1 - p3)],
+                  [k12*np.cos(p1 - p2), (m2/3 + m3)*a2**2, k23*np.cos(p2 - p3)],
+                  [k13*np.cos(p1 - p3), k23*np.cos(p2 - p3), m3/3*a3**2]])
+    b1 = k12*np.sin(p1 - p2)*w2**2 + k13*np.sin(p1 - p3)*w3**2
+    b2 = -k12*np.sin(p1 - p2)*w1**2 + k23*np.sin(p2 - p3)*w3**2
+    b3 = -k13*np.sin(p1 - p3)*w1**2 - k23*np.sin(p2 - p3)*w2**2
+    u = np.array([tau[0] - tau[1], tau[1] - tau[2], tau[2]])
+    G = 9.81*np.array([(m1/2 + m2 + m3)*a1*np.cos(p1), (m2/2 + m3)*a2*np.cos(p2),
+                       m3/2*a3*np.cos(p3)])
+    x = np.linalg.solve(A, u - G - np.array([b1, b2, b3]))
+    return np.array([x[0], x[1] - x[0], x[2] - x[1]])
+"""
+
+_CASES = [
+    (STANFORD, "stanford", "jacobian", [("= 0 if slides[k] else axis", "= axis")]),
+    (STANFORD, "stanford", "jacobian", [("axis if slides[k] else np.cross", "np.cross")]),
+    (ENERGY, "planar3r", "kinetic_energy", [("phi[j] - phi[k]", "q[j] - q[k]")]),
+    (
+        STACKED,
+        "spatial3r",
+        "mass_matrix",
+        [("R[1:], TENSOR, R[1:]", "R[:3], TENSOR, R[:3]")],
+    ),
+    (RATES, "spatial3r", "forward_dynamics", [(" + np.cross(w, v[k]*z)", "")]),
+    (
+        RATES,
+        "spatial3r",
+        "forward_dynamics",
+        [("[0, 0, -1], [0, 1, 0]", "[0, 0, 1], [0, -1, 0]"), (" + np.cross(w, v[k]*z)", "")],
+    ),
+    (RATES, "spatial3r", "forward_dynamics", [("np.cross(w, I @ w)", "np.cross(I @ w, w)")]),
+    (
+        STEPS,
+        "spatial3r",
+        "coriolis_matrix",
+        [("np.cross(wv, [a, 0, 0])", "np.cross(wu, [a, 0, 0])")],
+    ),
+    (LINKS, "planar3r", "mass_matrix", [("link.l*", "link.a*"), ("range(k + 1)", "range(k)")]),
+    (ABSOLUTE, "planar3r", "forward_dynamics", [("tau[1] - tau[2], tau", "tau[1], tau")]),
+    (
+        ABSOLUTE,
+        "planar3r",
+        "forward_dynamics",
+        [("k12, k13, k23 = (m2/2 + m3)", "k12, k13, k23 = (m2/2 + m3/2)"),
+         ("tau[1] - tau[2], tau", "tau[1], tau")],
+    ),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "robot", "quantity", "slips"), _CASES)
+def test_it_is_told(text, robot, quantity, slips, tmp_path) -> None:
+    assert kl.diagnose(robot, quantity, written(text)).agrees
+    found, good = asked(with_slips(text, slips), robot, quantity, tmp_path / "hand.py")
+    assert good, found.sentence
+
+
+def _told(text, robot, quantity, slip, file) -> str:
+    wrong = with_slips(text, [slip])
+    file.write_text(wrong)
+    return kl.diagnose(robot, quantity, written(wrong, file)).sentence
+
+
+def test_a_cross_product_the_wrong_way_about_is_told_as_it_is(tmp_path) -> None:
+    slip = ("np.cross(w, I @ w)", "np.cross(I @ w, w)")
+    told = _told(RATES, "spatial3r", "forward_dynamics", slip, tmp_path / "hand.py")
+    assert "np.cross(w, I @ w)" in told.split("should be")[1]
+
+
+def test_a_name_goes_before_the_sum_that_it_is(tmp_path) -> None:
+    file = tmp_path / "hand.py"
+    text = ENERGY.replace("arm[j]*arm[k]", "reach*arm[k]").replace(
+        "            for k in range(i + 1):", "            reach = arm[j]*1.0\n"
+        "            for k in range(i + 1):")  # fmt: skip
+    told = _told(text, "planar3r", "kinetic_energy", ("reach*arm[k]", "arm[k]*arm[k]"), file)
+    assert "reach" in told.split("should be")[1]
+
+
+def test_a_rotation_is_transposed_and_no_row_times_it(tmp_path) -> None:
+    slip = ("c = R @ COM[k]", "c = R.T @ COM[k]")
+    told = _told(RATES, "spatial3r", "forward_dynamics", slip, tmp_path / "hand.py")
+    assert "R @ COM[k]" in told.split("should be")[1]
