@@ -745,9 +745,11 @@ def _copied(line: str, named: dict[str, str], writing: Hand) -> str:
 _STARTS_FORMULA = re.compile(r"^[-(\d.]")
 _BY_DEFINITION = re.compile(
     r"\\partial|∂|\\nabla|\\(?:sum|int)(?![A-Za-z])|\\d?t?frac\s*\{\s*(?:\\mathrm\s*\{)?d|\bd\w*\s*/\s*d\w"
+    r"|\{\s{0,2}\}\s{0,2}[\^_]|[TRA]_\{?\d\}?\^\{?\d\}?\s{0,2}(?:\\[,;:! ]\s{0,2})?[TRA]_"
     r"|\^\s*\{?(?:T\b|\\top|\\mathrm\s*\{?T)|^-?\s*[xyzVUPTKL](?:_\{?\w+\}?)?$|^[TK]\s*-\s*[VUP]$"
 )
-"""A part of a chain of equalities that says what the entry is: a derivative, -y, J^T f, T - V."""
+"""A part of a chain of equalities that says what the entry is: a derivative, -y, J^T f, T - V, a
+product of poses by their frames."""
 
 
 _SCRIPT = re.compile(r"\\(?:mathcal|mathrm|mathbf|boldsymbol)\s*\{\s*([A-Za-z])\s*\}")
@@ -787,6 +789,10 @@ _EQUATION = re.compile(r"loop_?\d?")
 """Entries that are equations: each side is one formula, a name alone too."""
 
 
+_LINE_ENDS = re.compile(r"^[&\s]+|(?:\\\\(?:\[[\w. ]{0,9}\])?|[&\s]){1,20}$")
+"""Between two lines of a chain: ``\\\\`` and ``&``."""
+
+
 def readings(text: str, entry: str) -> list[str]:
     r"""The equations in a chain of equalities, each with one formula, the last one first.
 
@@ -795,7 +801,7 @@ def readings(text: str, entry: str) -> list[str]:
     """
     if entry.startswith(_OF_TWO_SOLUTIONS) and _EITHER.search(text):
         return [one for both in _either(text) for one in readings(both, entry)]
-    parts = [part.strip() for part in bare(text).split("=")]
+    parts = [_LINE_ENDS.sub("", part) for part in bare(text).split("=")]
     dollars = "$" if is_latex(text) else ""
     if _EQUATION.fullmatch(entry) and len(parts) == 2 and all(parts) and parts[0] != entry:
         return [f"{dollars}{part}{dollars}" for part in reversed(parts)]
