@@ -227,8 +227,21 @@ def _definitions(
             names = [name for name in line.text.definitions if name not in sound]
             if isinstance(derived, Derivation):
                 names = [x for x in names if not stands_so(line.text, x, derived.arm.words)]
+                names = [x for x in names if not _is_a_moment_so(case, told, x)]
             if names:
                 yield entry, Definitions(line, told, here, names)
+
+
+def _is_a_moment_so(case: Case, text: Written, name: str) -> bool:
+    """Whether a moment of inertia is the arm's as it is explained: I of ``I = m*l^2/12``."""
+    number = _number_of(case, name) or _number_of(case, f"{name}1")
+    if name[0] != "I" or not number:
+        return False
+    try:
+        value = text.definition(name).values(_numbers_here(case))
+    except (KinlabError, KeyError):
+        return False
+    return bool(np.max(np.abs(value - number)) <= TOLERANCES.formula_agrees * abs(number))
 
 
 def _as_read(

@@ -88,7 +88,7 @@ _WORDS = """
 """Names and functions of several letters, of which none is a product."""
 _GLUED = re.compile(r"_\w[A-Za-z]")
 """A product of names without a sign or a blank, as only LaTeX has it."""
-_CENTRE = re.compile(r"l_?c_?([₀-₉]+|(?<=_c)[1-9](?![\w.]))")
+_CENTRE = re.compile(r"l_?c_?([₀-₉]+|(?<=_c)[1-9](?![A-Za-z0-9_.]))")
 
 # -------- A formula
 

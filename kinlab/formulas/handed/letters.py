@@ -44,11 +44,14 @@ def plain_letters(text: str, place: str) -> str:
 _ELL = r"\\ell(?![A-Za-z])"
 _OF_LINK = re.compile(rf"_\s*(?:\{{\s*{_ELL}\s*_?\s*(?:\{{\s*(\w)\s*\}}|(\w))\s*\}})")
 _LENGTH_A = re.compile(r"(?<![A-Za-z\\])a_(?:\d|\{\d\})")
+_CENTRE_A = re.compile(r"(?<![A-Za-z\\])a_\{\s?c\s?_?\s?([1-9])\s?\}")
 _OF_CENTRE = re.compile(rf"{_ELL}\s*_\s*(?:\{{\s*(\w)\s*\}}|(\w))")
 
 
 def siciliano_s_letters(text: str) -> str:
-    r"""``m_{\ell_1}`` as ``m_1``; beside lengths ``a_1``, ``\ell_1`` as the centre's distance."""
+    r"""``m_{\ell_1}`` as ``m_1``; beside ``a_1``, ``\ell_1`` and ``a_{c1}`` lead to the centre."""
+    if _LENGTH_A.search(text):
+        text = _CENTRE_A.sub(r"l_{c\1}", text)
     if "\\ell" not in text:
         return text
     text = _OF_LINK.sub(lambda found: f"_{found[1] or found[2]}", text)

@@ -13,7 +13,11 @@ from kinlab.formulas.handed.letters import plain_letters, siciliano_s_letters, w
 from kinlab.formulas.handed.prose import doubtful
 from kinlab.formulas.handed.rates import plain_rates
 from kinlab.formulas.handed.units import without_units
-from kinlab.formulas.handed.words import refuse_comments, without_words
+from kinlab.formulas.handed.words import (
+    refuse_comments,
+    without_remark_behind,
+    without_words,
+)
 from kinlab.formulas.signs.dressed import undressed
 from kinlab.formulas.signs.macros import written_out
 from kinlab.formulas.signs.remarks import without_numbers
@@ -145,6 +149,7 @@ def as_formula(
     doubts = doubtful(text, entry)
     text, marks = without_marks(siciliano_s_letters(text))
     refuse_comments(text, place)
+    text = without_remark_behind(text)
     text = without_code(text, not several and bool(_ALONE.fullmatch(entry)))
     text = undressed(text, entry)
     text = without_words(text, entry, place)

@@ -164,9 +164,18 @@ def without_words(text: str, entry: str, place: str) -> str:
 
 _COMMENTS = re.compile(
     r"(?<![:/])//(?!=)([^\n]{1,200})|/\*(.{1,200}?)\*/|\(\*(.{1,200}?)\*\)"
-    r"|(?:^|[ \t\n])#(?![\d{])([^\n]{1,200})",
+    r"|(?:^|[ \t\n])#(?![\d{])([^\n]{1,200})"
+    r"|(?<=[\w)}\]])[ \t]{1,9}\(((?=[^()]{0,60}[A-Za-z]{3})[^()=+*/^\\$<>\[\]]{8,100})\)"
+    r"\s{0,9}\.?\s{0,9}$",
     re.DOTALL,
 )
+"""What is said in a comment, or in parentheses behind all."""
+
+
+def without_remark_behind(text: str) -> str:
+    """The text without words in parentheses behind it: ``(2.0 kg from the rotor)``."""
+    found = [one for one in _COMMENTS.finditer(text) if one.lastindex == _COMMENTS.groups]
+    return text[: found[-1].start()] if found else text
 
 
 def refuse_comments(text: str, place: str) -> None:

@@ -563,7 +563,17 @@ def _factors_beside(here: Here) -> set[str]:
         if not isinstance(summand, ast.Constant)
     ]
     inside = {*names(here.node)}
-    return set.intersection(*sets) - inside if sets else set()
+    every = set[str].intersection(*sets) if sets else set[str]()
+    return (every | _factors_in_the_row(here)) - inside
+
+
+def _factors_in_the_row(here: Here) -> set[str]:
+    """The factors of products in the row of a matrix: ``sa`` of ``[s, c*sa, ca]``."""
+    row, rows = here.parent, here.above[-2] if len(here.above) > 1 else None
+    if not isinstance(row, ast.List | ast.Tuple) or not isinstance(rows, ast.List | ast.Tuple):
+        return set()
+    products = (one for one in row.elts if isinstance(one, ast.BinOp) and one is not here.node)
+    return {x for one in products if isinstance(one.op, ast.Mult) for x in names(one)}
 
 
 def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[ProgramEdit]:

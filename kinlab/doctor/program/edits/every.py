@@ -348,6 +348,9 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Program
                 swapped = [*target.elts]
                 swapped[k], swapped[k + 1] = swapped[k + 1], swapped[k]
                 yield here.within(target, "elts", swapped, "order", 1.07)
+            for one in target.elts:
+                if isinstance(one, ast.Subscript):
+                    yield from _target(here, one, scope, observed)
         if isinstance(target, ast.Subscript):
             yield from _target(here, target, scope, observed)
             yield from across(here)

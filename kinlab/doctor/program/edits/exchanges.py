@@ -35,6 +35,7 @@ def of_statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
         if isinstance(node, ast.Name | ast.Subscript) and _plain(node):
             uses.setdefault(ast.unparse(node), []).append(node)
     yield from _rows_throughout(here, value)
+    yield from _poses_exchanged(here, value)
     shapes: dict[str, Shape | None] = {}
     for text, found in uses.items():
         shapes[text] = observed.shape(found[0])
@@ -91,6 +92,19 @@ def _rows_throughout(here: Here, value: ast.expr) -> Iterator[ProgramEdit]:
             other = ast.Subscript(found[0].value, moved, ast.Load())
             new = Renamed({text: other}).of(value)
             yield here.within(here.node, "value", new, "index", 1.1)
+
+
+def _poses_exchanged(here: Here, value: ast.expr) -> Iterator[ProgramEdit]:
+    """In one entry of what is given on two of one kind for one another: ``Y[0] @ X[1] + Y[1]``."""
+    entries = value.elts if isinstance(value, ast.Tuple | ast.List) else []
+    for k, entry in enumerate(entries):
+        kept = (x for x in nodes(entry) if isinstance(x, ast.Subscript))
+        roots = dict.fromkeys(x.value.id for x in kept if isinstance(x.value, ast.Name))
+        if len(roots) == len("XY"):
+            one, other = roots
+            both = {one: ast.Name(other, ast.Load()), other: ast.Name(one, ast.Load())}
+            new = Renamed(dict[str, ast.expr](both)).of(entry)
+            yield here.within(entries, k, new, "names exchanged", _ANGLES)
 
 
 def _with_the_other_sign(node: ast.expr, name: str) -> ast.expr | None:

@@ -10,13 +10,14 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.bytecode.syntax import nodes, text_of
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.glossary.textbook import Glossary
 from kinlab.doctor.program.edits.every import edits
 from kinlab.doctor.program.edits.numbers.as_the_arm import as_it_is, of_table
 from kinlab.doctor.program.edits.numbers.data import GRAVITY
 from kinlab.doctor.program.edits.numbers.own_numbers import of_own_numbers
+from kinlab.doctor.program.edits.scope.forms import summands
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.grounds.as_called import of_centres
 from kinlab.doctor.program.grounds.called import kinds_called
@@ -34,6 +35,10 @@ from kinlab.tolerances import TOLERANCES
 
 _MADE = 0.86
 """Cost of an exchange after which a row is the robot's."""
+_AGAIN = 0.08
+"""What a term costs more that a sum has already."""
+_OF_SUM = 0.02
+"""What the other sign of a sum costs more, of which each term has its own."""
 _TURNED = 0.05
 """What the sign of a length in a row costs more."""
 _UPWARDS, _DOWNWARDS = 0.05, 0.01
@@ -85,9 +90,18 @@ def chosen(
     every = [replace(x, cost=_MADE) if _makes_one_of(rows, x) else x for x in every]
     signs = ((x, _of_sign(x, observed, robot)) for x in every)
     every = [x if cost == x.cost else replace(x, cost=cost) for x, cost in signs]
+    every = [replace(x, cost=x.cost + _AGAIN) if _adds_again(x) else x for x in every]
     every = sorted(every, key=_at_best)[:most]
     weigh = dimensions.against
     return [replace(x, cost=x.cost + more) if (more := weigh(x)) else x for x in every]
+
+
+def _adds_again(edit: ProgramEdit) -> bool:
+    """Whether an edit adds a term that stands in the sum already: that is a factor of it."""
+    new = edit.changes[0].new
+    if edit.kind != "missing term" or not isinstance(new, ast.BinOp):
+        return False
+    return text_of(new.right) in map(text_of, summands(new.left))
 
 
 def turns_a_length(edit: ProgramEdit, observed: Observed, robot: Any) -> bool:
@@ -206,6 +220,8 @@ def _of_sign(edit: ProgramEdit, observed: Observed, robot: Any) -> float:
     if edit.kind != "sign":
         return edit.cost
     cost = edit.cost + _TURNED * turns_a_length(edit, observed, robot)
+    whole = isinstance(edit.node, ast.BinOp) and isinstance(edit.node.op, ast.Add | ast.Sub)
+    cost += _OF_SUM * (whole and isinstance(edit.changes[0].new, ast.BinOp))
     if edit.numbers is None:
         return cost
     old, new = edit.numbers

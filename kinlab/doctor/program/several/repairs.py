@@ -269,8 +269,7 @@ class _Several:
         if found:
             return self.settled(search, found)
         wider = self._where_parts_are_silent(search, known)
-        found = [] if wider is None else self._after(search, wider[0])
-        if found:
+        if wider is not None and (found := self._beside_what_rests(search, wider[0])):
             return found
         most = 1 if together.thorough else _STEPS - 1
         firsts = in_order.reached[:most]
@@ -309,6 +308,19 @@ class _Several:
         if there is None:
             return None
         return [(one,) for one in _apart(resting.making_right(there))[:_RIGHT_AT_REST]], there
+
+    def _beside_what_rests(self, search: LineSearch, ways: list[Way]) -> list[ProgramRepair]:
+        """What is left beside an edit that is right at rest; of the likeliest one two more."""
+        for turn, way in enumerate(ways):
+            with changed(search.trial, way):
+                here = _beside(search, way, thorough=True)
+                found = here.singles()
+                if not found and not turn:
+                    self.left = max(self.left, search.most)
+                    found = self.found(here)
+            if found:
+                return self.settled(search, found)
+        return []
 
     @staticmethod
     def _plain(search: LineSearch, tried: _Tried) -> list[ProgramRepair]:

@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.doctor.changes import ANY_ZERO
 from kinlab.doctor.derivations.parts import MOVING
 from kinlab.doctor.program.places import ProgramEdit
 from kinlab.doctor.program.search.repair import LineSearch
@@ -20,6 +21,9 @@ from kinlab.doctor.program.trial import NoProgramError
 from kinlab.doctor.program.variants import Variants
 from kinlab.errors import KinlabError
 from kinlab.tolerances import TOLERANCES
+
+_POSES = 3
+"""States at rest of what has any zero."""
 
 
 class AtRest:
@@ -33,7 +37,8 @@ class AtRest:
         self.asked, self.work = search.asked, search.work
         self.own: Array | None = None
         case = search.case
-        stacks = _states(case.arguments)
+        any_zero = case.quantity.name in ANY_ZERO
+        stacks = _at_rest(case.arguments) if any_zero else _states(case.arguments)
         if case.quantity.read is not None or not stacks:
             return
         try:
@@ -42,7 +47,7 @@ class AtRest:
         except (KinlabError, np.linalg.LinAlgError, ValueError):
             return
         self.asked = search.asked.at(replace(case, arguments=stacks), wanted)
-        self.differences = any(name in MOVING for name in stacks)
+        self.differences = any(name in MOVING for name in stacks) and not any_zero
         self.goal = self._parts(wanted)
         size = np.abs(self.goal).max(axis=tuple(range(1, wanted.ndim)), keepdims=True)
         self.scale = np.maximum(size, max(float(np.max(size)) * TOLERANCES.formula_agrees, 1e-300))
@@ -112,6 +117,13 @@ def moving_alone(arguments: dict[str, Array], some: Sequence[str]) -> dict[str, 
         name: np.zeros_like(x) if name in MOVING and name not in some else x
         for name, x in arguments.items()
     }
+
+
+def _at_rest(arguments: dict[str, Array]) -> dict[str, Array]:
+    """A few states at rest, of what has any zero: one alone tells nothing of it."""
+    if not any(name in MOVING for name in arguments):
+        return _states(arguments)
+    return moving_alone({name: stack[:_POSES] for name, stack in arguments.items()}, [])
 
 
 def _states(arguments: dict[str, Array]) -> dict[str, Array]:

@@ -100,6 +100,7 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             undone = kept is right and _turns_back(left, right)
             cost = 1.02 if undone else cost + FLAT * alone
             typed = kept is right and getattr(left, "value", 0) in _HALVES
+            typed = typed or (kept is left and isinstance(op, ast.Div) and _is_two(right))
             yield here.instead(kept, "extra factor", _TYPED if typed else cost)
         if isinstance(op, ast.MatMult):
             swapped = chains.exchanged(node, lambda one: observed.shape(one) == ())
@@ -188,6 +189,10 @@ def _halved(product: ast.expr) -> ast.expr | None:
         return product.right if getattr(product.left, "value", 0) == 2 else None
     rest = _halved(product.left) if isinstance(product.op, ast.MatMult) else None
     return None if rest is None else ast.BinOp(rest, product.op, product.right)
+
+
+def _is_two(node: ast.expr) -> bool:
+    return isinstance(node, ast.Constant) and node.value == 2
 
 
 def _turns_back(matrix: ast.expr, product: ast.expr) -> bool:
