@@ -80,6 +80,8 @@ def with_habits(file: FormulaFile, robot: Mechanism) -> FormulaFile:
         if not found and centre and (own := f"I{centre[1]}") not in used:
             found = own if own in words else as_text(named.others.get(own, ()))
             found = "" if own not in words and own not in named.others else found
+        if not found and plain[0] == "L" and (own := plain.lower()) in named.others:
+            found = as_text(named.others[own])  # L3 of l3, where that is the tool's
         if not found and robot.n == 1:  # m and l of the only link
             alone = f"{plain}1"
             if tree.names(canonical(alone)) <= motion | words | given:

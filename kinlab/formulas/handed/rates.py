@@ -54,13 +54,14 @@ _DOTS = ("", r"\dot", r"\ddot")
 
 
 _OF_PHI = re.compile(
-    r"\\d?dot\s*\{?\s*\\(?:var)?phi(?![A-Za-z])|[φϕ][\u0307\u0308]|(?<![A-Za-z])(?:d{1,2}phi|phid{1,2})_?\d"
+    r"\\d?dot\s*\{?\s*\\(?:var)?phi(?![A-Za-z])|[φϕ][\u0307\u0308]|(?<![A-Za-z])(?:d{1,2}phi|phid{1,2})(?:_?\d|(?!\w))"
 )
 _ANGLE = re.compile(
     r"\\(?:var)?theta|[θϑ]|(?<![A-Za-z\\])(?:d{0,2}(?:q|th|theta)|(?:q|th|theta)d{1,2})\}?(?:_|\d)"
 )
 _PHI = re.compile(
-    r"\\(?:var)?phi(?![A-Za-z])|[φϕ]|(?<![A-Za-z])phi(?=[_\d])|(?<=(?<![A-Za-z])d)phi(?=[_\d])|(?<=(?<![A-Za-z])dd)phi(?=[_\d])|(?<![A-Za-z])phi(?=d{1,2}_?\d)"
+    r"\\(?:var)?phi(?![A-Za-z])|[φϕ]|(?<![A-Za-z])phi(?=[_\d])|(?<=(?<![A-Za-z])d)phi(?=[_\d])|(?<=(?<![A-Za-z])dd)phi(?=[_\d])|(?<![A-Za-z])phi(?=d{1,2}(?:_?\d|(?!\w)))"
+    r"|(?<![A-Za-z\\])phi(?!\w)|(?<=(?<![A-Za-z])d)phi(?!\w)|(?<=(?<![A-Za-z])dd)phi(?!\w)"
 )
 """The angles of joints as phi, where they have rates, and no other letter stands for them."""
 

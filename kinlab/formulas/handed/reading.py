@@ -99,6 +99,10 @@ _OF_TIME = re.compile(r"(?<![\w.])(?:q|th|theta|θ)\[\s*[1-9]\s*\]\s*\(\s*t\s*\)
 """Maple's ``theta[2](t)``: as nothing else has it, all indices count from 1."""
 _PLACE = re.compile(r"(?<![\w.])([A-Za-zθ]\w*)\[\s*([1-9])\s*\](?:\s*\(\s*t\s*\))?")
 _ANY_ZERO = re.compile(r"\[\s*0\s*[\],]|\*\*")
+_BOLD = re.compile(r"\*\*([A-Za-zÀ-ž\u4e00-\u9fff][^*\n=+/]{0,60}[:.：])\*\*")
+"""Markdown's ``**Answer:**``."""
+_GREEK_ANGLE = re.compile(r"(?<![A-Za-z])(sin|cos|tan)([θϑφϕ](?:[₁-₉]|[1-9])?)(?![\w₁-₉²³(^])")
+"""A function with its angle, and nothing between: ``cosθ2``."""
 _MAPLES = re.compile(r":(?=\s*(?:$|\n|[A-Za-z]\w{0,20}(?:\[[\d,\s]{1,5}\])?\s*:=))")
 """A colon that ends a statement of Maple's."""
 _ON_A_LINE = re.compile(r"\n\s*(?=(?:with|mit)\s)")
@@ -125,7 +129,8 @@ def as_formula(
         ExpressionError: what can be read in two ways, or a clause that is not so.
     """
     refuse_nested(text, place)
-    text = written_out(text, place)
+    text = _BOLD.sub(r"\1", written_out(text, place))
+    text = _GREEK_ANGLE.sub(r"\1(\2)", text) if "\\" not in text else text
     text = _ACCENTED.sub(lambda letter: unicodedata.normalize("NFC", letter[0]), text)
     text = _ABBREVIATED.sub(_where, _STAR_SAID.sub("", text))
     text = _defined(_DOLLARS.sub("$$", text))
@@ -149,7 +154,7 @@ def as_formula(
     doubts = doubtful(text, entry)
     text, marks = without_marks(siciliano_s_letters(text))
     refuse_comments(text, place)
-    text = without_remark_behind(text)
+    text = without_remark_behind(text, place)
     text = without_code(text, not several and bool(_ALONE.fullmatch(entry)))
     text = undressed(text, entry)
     text = without_words(text, entry, place)

@@ -100,6 +100,8 @@ _OTHERWISE = re.compile(
     r"|大约|大概|およそ|約(?=\d)"
     r"|\bnot\s+(?:yet\s+)?(?:been\s+)?(?:checked|verified|tested|finished|complete)\b"
     r"|\bvorzeichen\s+(?:\w+\s+){0,3}(?:umgekehrt|falsch|vertauscht)\b"
+    r"|\bin\s+(?:milli|centi|zenti)met(?:re|er)n?s?\b|\bvernachlässigung\s+(?:de[sr]|von)\s+term"
+    r"|\b(?:arm|case|pose|posture|configuration)s?\s+only\b|\bnon\s+per\s+l[aeo]\b"
     r"|\bnicht\s+(?:das|die|der|den)\s+gesuchte\w*|\b(?:das|die)\s+negative\s+davon\b"
     r"|\bnicht\s+(?:die|das|der|den)\s+(?:der|des|von|vom)\b|\bnot\s+(?:that|the\s+one|those)\s+of\b"
     r"|未验证|未検証|\bdas\s+doppelte\b|\bdie\s+hälfte\b|\b(?:la\s+)?moitié\b"
@@ -164,18 +166,39 @@ def without_words(text: str, entry: str, place: str) -> str:
 
 _COMMENTS = re.compile(
     r"(?<![:/])//(?!=)([^\n]{1,200})|/\*(.{1,200}?)\*/|\(\*(.{1,200}?)\*\)"
-    r"|(?:^|[ \t\n])#(?![\d{])([^\n]{1,200})"
-    r"|(?<=[\w)}\]])[ \t]{1,9}\(((?=[^()]{0,60}[A-Za-z]{3})[^()=+*/^\\$<>\[\]]{8,100})\)"
-    r"\s{0,9}\.?\s{0,9}$",
+    r"|(?:^|[ \t\n])#(?![\d{])([^\n]{1,200})",
     re.DOTALL,
 )
-"""What is said in a comment, or in parentheses behind all."""
+_BEHIND = re.compile(r"(?<=[\w)}\]])[ \t]{1,9}\(([^()]{8,100})\)\s{0,9}\.?\s{0,9}$")
+_PLAIN_WORDS = re.compile(r"(?:[^\W\d_]|\d|(?<=\d)[.,](?=\d)|(?<=\w)[-'’](?=\w)|[.,;:]?\s|[.,;:])+")
+_NO_WORDS = re.compile(
+    r"[^\W\d_]\d|\d[^\W\d_]|[\u0370-\u03ff]|(?<![^\W\d_])(?:sin|cos|tan|sqrt|exp)"
+)
+"""Names with numbers, Greek letters and functions."""
+_SMALL_WORDS = (
+    r"\b(?:the|of|from|for|is|are|in|by|with|and|as|see|to|only|without|der|die|das|ist|sind|von|vom|aus"
+    r"|im|mit|und|nur|ohne|siehe|la|le|les|el|du|de|des|del|della|est|es)\b"
+)
+"""Words that no formula has."""
 
 
-def without_remark_behind(text: str) -> str:
-    """The text without words in parentheses behind it: ``(2.0 kg from the rotor)``."""
-    found = [one for one in _COMMENTS.finditer(text) if one.lastindex == _COMMENTS.groups]
-    return text[: found[-1].start()] if found else text
+def without_remark_behind(text: str, place: str) -> str:
+    """The text without words in parentheses behind it: ``(2.0 kg from the rotor)``.
+
+    Raises:
+        ExpressionError: they change what the formula claims.
+    """
+    found = _BEHIND.search(text)
+    inside = found[1] if found else ""
+    words = re.findall(r"[^\W\d_]{3,}", inside)
+    small = words and re.search(_SMALL_WORDS, inside, re.IGNORECASE)
+    if found is None or not small or _NO_WORDS.search(inside):
+        return text  # (alpha beta gamma) may be a factor
+    if not _PLAIN_WORDS.fullmatch(inside):
+        return text
+    if _OTHERWISE.search(inside) or _MORE.search(inside):
+        raise refused(place, _CHANGED, words=inside)
+    return text[: found.start()]
 
 
 def refuse_comments(text: str, place: str) -> None:
@@ -218,7 +241,7 @@ _ENERGY = (
 )
 _SAYS_BEHIND = (
     r"(?:^|[^\w]|\b(?:this|that|it|which|das|dies|und|sondern|这|ce|c['’]))\s*"
-    r"(?:is|ist|sondern|是|est)\s+(?:the\s+|die\s+|das\s+|der\s+|l['’])?(?:{noun})"
+    r"(?:(?:is|ist|sondern|est)\s+|是\s*)(?:the\s+|die\s+|das\s+|der\s+|l['’])?(?:{noun})"
 )
 _SAYS = (
     r"(?:^|[.;。\n])\s*(?:(?:the|our|its|die|das|der|la|l['’])\s+)?(?:{noun})"

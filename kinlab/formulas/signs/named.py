@@ -119,6 +119,9 @@ _IN_BASE = re.compile(
     rf"\\?\{{?([RTAHpPdo])\}}?(?:\^\{{?0\}}?_{_END}|_\{{?0\}}?\^{_END}|_{_END}\^\{{?0\}}?)"
 )
 _FROM_BASE = re.compile(rf"(?:\{{\}})?\^\{{?0\}}?\\?\{{?([RTAHpPdo])\}}?_{_END}")
+_CRAIG_S = re.compile(
+    rf"(?:\{{\}})?(?:\^\{{?0\}}?_{_END}|_{_END}\^\{{?0\}}?)\\?\{{?(?P<letter>[RTAHpPdo])\}}?"
+)
 _CHRISTOFFEL = re.compile(r"(?:Gamma|Γ)(\d)(\d)(\d)")
 _LONGEST = 80
 
@@ -143,6 +146,8 @@ def plain_name(text: str) -> str:
     spaceless = re.sub(r"\s", "", dotted)
     if found := _IN_BASE.fullmatch(spaceless) or _FROM_BASE.fullmatch(spaceless):
         return f"{found[1]}0{found[found.lastindex or 1]}"
+    if found := _CRAIG_S.fullmatch(spaceless):
+        return f"{found['letter']}0{found[1] or found[2]}"
     found = _CHRISTOFFEL.fullmatch(plain)
     return f"Gamma{found[1]}{found[2]}{found[3]}" if found else ""
 

@@ -579,7 +579,7 @@ def _factors_in_the_row(here: Here) -> set[str]:
 def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[ProgramEdit]:
     node = here.node
     own = text_of(node)
-    entry = isinstance(here.parent, ast.List | ast.Tuple)
+    entry = isinstance(here.parent, ast.List | ast.Tuple | ast.Dict)
     stem = stem_of(here.above)
     siblings = scope.addends.get(stem, set()) if whole else set()
     turned = isinstance(here.parent, ast.BinOp) and isinstance(here.parent.op, ast.MatMult)
@@ -702,6 +702,8 @@ def _of_a_kind(piece: ast.expr, node: ast.expr) -> bool:
 
 def _entries_beside(here: Here) -> set[str]:
     """The names in the other entries of a list, and these themselves."""
-    assert isinstance(here.parent, ast.List | ast.Tuple)
-    others = [one for one in here.parent.elts if one is not here.node]
+    row = here.parent
+    assert isinstance(row, ast.List | ast.Tuple | ast.Dict)
+    every = row.values if isinstance(row, ast.Dict) else row.elts
+    others = [one for one in every if one is not here.node]
     return {*(name for one in others for name in names(one)), *map(text_of, others)}

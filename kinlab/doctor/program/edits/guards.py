@@ -12,6 +12,8 @@ from kinlab.doctor.program.places import Here, ProgramEdit, is_nothing
 
 _GUARDED = 1.08
 """What it costs that a term counts for some joints only."""
+_CHOSEN = 1.1
+"""The same of a force or a moment, as the joint moves."""
 _CHOICE = 3
 """Arguments of ``np.where``."""
 _VECTOR = (3,)
@@ -50,7 +52,10 @@ def of_guards(
     node, shape = here.node, observed.shape(here.node)
     if shape == _VECTOR and isinstance(here.parent, ast.Assign) and here.field == "value":
         yield from _of_columns(here, scope, tests)
-    if not isinstance(getattr(here.parent, "op", None), ast.Add | ast.Sub) or shape is None:
+    op = getattr(here.parent, "op", None)
+    if shape == _VECTOR and isinstance(op, ast.MatMult) and isinstance(node, ast.Name):
+        yield from _of_a_slide(here, scope, tests)
+    if not isinstance(op, ast.Add | ast.Sub) or shape is None:
         return
     if not isinstance(node, ast.Name | ast.Subscript | ast.Attribute | ast.Call):
         return
@@ -72,6 +77,15 @@ def _tests_here(scope: Scope, tests: dict[str, ast.expr]) -> list[ast.expr]:
     inside = {*scope.shapes, *scope.counting}
     own = {text: one for text, one in tests.items() if inside.issuperset(names(one))}
     return [*(own | {ast.unparse(one): one for one in scope.tests_here()}).values()]
+
+
+def _of_a_slide(here: Here, scope: Scope, tests: dict[str, ast.expr]) -> Iterator[ProgramEdit]:
+    """The force for a slide where the moment is for a hinge: ``z @ (f if slides[i] else n)``."""
+    others = [one for text, one in scope.simple(_VECTOR) if text != ast.unparse(here.node)]
+    for test in _tests_here(scope, tests):
+        for other in (one for one in others if isinstance(one, ast.Name)):
+            for both in ((other, here.node), (here.node, other)):
+                yield here.instead(ast.IfExp(test, *both), "condition", _CHOSEN)
 
 
 def _of_columns(here: Here, scope: Scope, tests: dict[str, ast.expr]) -> Iterator[ProgramEdit]:

@@ -17,7 +17,7 @@ from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import names
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.own.plain import made_like
-from kinlab.doctor.program.places import DATA, ProgramEdit, places
+from kinlab.doctor.program.places import DATA, Here, ProgramEdit, places
 from kinlab.doctor.program.trial import FieldChange, Trial, is_data
 
 _RIGHT_ANGLES = (0.0, pi / 2, -pi / 2)
@@ -361,11 +361,28 @@ def numbers(trial: Trial, observed: Observed) -> Iterator[NumberPlace]:
             if not isinstance(node, ast.Constant) or observed.of(node) is None:
                 continue
             counts = type(node.value) is int and (
-                isinstance(here.parent, ast.BinOp) or measured(here.parent)
+                isinstance(here.parent, ast.BinOp) or measured(here.parent) or _is_of_a_link(here)
             )
             if is_number(node.value) and (counts or isinstance(node.value, float)):
                 yield NumberPlace(node.value, part, node, "value", node)
     yield from leaves(trial)
+
+
+_OF_A_LINK = re.compile(r"(?:m|l|lc|a|d|r|i|j|I|J|L|M|mass|len|length)_?[1-9]")
+"""Names of the numbers of one link."""
+
+
+def _is_of_a_link(here: Here) -> bool:
+    """Whether a whole number is set to a name of a link's: ``m1, m2 = 3, 2``."""
+    line = here.above[-1] if here.above else None
+    row = here.parent if isinstance(here.parent, ast.Tuple) else None
+    line = here.above[-2] if row is not None and len(here.above) > 1 else line
+    if not isinstance(line, ast.Assign):
+        return False
+    (target, *_others) = line.targets
+    if row is not None and isinstance(target, ast.Tuple) and len(target.elts) == len(row.elts):
+        target = next(to for to, one in zip(target.elts, row.elts, strict=True) if one is here.node)
+    return isinstance(target, ast.Name) and bool(_OF_A_LINK.fullmatch(target.id))
 
 
 def is_number(value: Any) -> TypeGuard[float]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from math import pi
-from types import ModuleType
+from types import FunctionType, ModuleType
 from typing import Any
 
 import numpy as np
@@ -76,3 +76,14 @@ def crossing_of(trial: Trial, observed: Observed) -> list[str]:
         if alone and isinstance(node, ast.Call) and observed.shape(node) == (6, 6):
             found += [called(node)] * (observed.shape(node.args[0]) == (6,))
     return [*dict.fromkeys(found)]
+
+
+def methods_of(trial: Trial) -> dict[str, int]:
+    """The methods of a program's classes, each with how many arguments it asks for, self too."""
+    found: dict[str, int] = {}
+    for one in trial.classes:
+        for name, held in vars(one).items():
+            function = getattr(held, "__func__", held)
+            if isinstance(function, FunctionType) and not name.startswith("__"):
+                found[name] = function.__code__.co_argcount
+    return found

@@ -29,7 +29,7 @@ class Knowledge:
     Attributes:
         observed: what its expressions were.
         space: what the module's names stand for.
-        functions: the program's own, each with how many arguments it asks for.
+        functions, methods: the program's own, each with how many arguments it asks for.
         called: the names of these, and of its methods.
         has_numpy: whether numpy is called ``np``.
         shapes: names of numbers, by their shapes.
@@ -107,6 +107,7 @@ class Knowledge:
         space, parts = trial.space, trial.program.parts
         calls = [node for node in nodes(tree) if isinstance(node, ast.Call)]
         self.functions = {p.name: len(p.tree.args.args) for p in parts[1:] if p.owner is None}
+        self.methods = functions.methods_of(trial)
         self.called = {p.name for p in parts[1:]}
         self.uncalled = [*idle.not_called(trial)]
         self._angular = {name for name in ANGLES if callable(space.get(name))}

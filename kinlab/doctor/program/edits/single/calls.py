@@ -23,6 +23,8 @@ _ARCS = ("arcsin", "asin", "arccos", "acos")
 """Functions that do not tell the quadrant."""
 _BACKWARDS = 0.97
 """Cost of the other order of a cross product that is the other way about than all write it."""
+_TWISTS, _OF_FORCES = (6, 6), 1.08
+"""Shape of what twists are crossed with, and the cost of that for what forces are."""
 _LOADS = ("f", "F")
 """How names of forces begin, whose lever stands in front of them."""
 _LED = 1.01
@@ -114,8 +116,17 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
                 if given not in scope.counters:
                     args = [*node.args, ast.Name(given, ast.Load())]
                     yield here.within(node, "args", args, "missing argument", 1.15)
+    if isinstance(node.func, ast.Attribute) and isinstance(node.func.value, ast.Name):
+        for other, count in scope.methods.items():
+            if other != name and count == scope.methods.get(name):
+                yield here.within(node.func, "attr", other, "function", 1.1)
     if name == "diag" and (observed.shape(node) or ())[1:] == ():
         yield here.instead(ast.Call(node.func, [node], []), "function", 1.1)
+    if observed.shape(node) == _TWISTS and isinstance(
+        getattr(here.parent, "op", None), ast.MatMult
+    ):
+        force = ast.UnaryOp(ast.USub(), ast.Attribute(node, "T", ast.Load()))
+        yield here.instead(force, "transposed", _OF_FORCES)  # crm(v) for -crm(v).T
     plain = [a for a in node.args if not isinstance(a, ast.Starred)]
     if len(plain) == len(node.args):
         for i, j in combinations(range(len(plain)), 2):

@@ -17,8 +17,8 @@ POWER, OF_A_NUMBER = 1.08, 1.25
 """Cost of another power, and of one of a number, which nobody means: ``0.25**2``."""
 OF_RODS = {3: 12, 12: 3}
 """A rod's moments of inertia about its end, and about its middle, are its mass by these."""
-
-
+_HOMOGENEOUS, _OF_A_POINT = 4, 1.03
+"""Coordinates of a point with its 1, and the cost of 0 for that."""
 _RODS = 1.02
 """Cost of all moments of a row about the other point."""
 _RATIO, _SQUARED = 5, 1.1
@@ -68,6 +68,24 @@ def of_rods(here: Here) -> Iterator[ProgramEdit]:
             yield ProgramEdit(here.part, changes, "number", _RODS, here.node)
 
 
+def _is_an_angle(here: Here) -> bool:
+    """Whether it stands among the joints' positions: ``[q[0], q[1], 0, q[3]]``."""
+    row = here.parent
+    if not isinstance(row, ast.List | ast.Tuple) or not isinstance(row.ctx, ast.Load):
+        return False
+    return sum(isinstance(one, ast.Subscript) for one in row.elts) > len(row.elts) // 2 > 1
+
+
+def _is_last_of_a_point(here: Here) -> bool:
+    """Whether it is the 1 of a point, or the 0 of a direction: ``np.r_[c, 1]``."""
+    row = here.parent
+    if not isinstance(row, ast.Tuple | ast.List) or row.elts[-1] is not here.node:
+        return False
+    joined = here.above[-2] if len(here.above) > 1 else None
+    glued = isinstance(joined, ast.Subscript) and getattr(joined.value, "attr", "") == "r_"
+    return glued or len(row.elts) == _HOMOGENEOUS
+
+
 def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
     value = here.node.value
     if not is_number(value):
@@ -82,7 +100,9 @@ def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
     given = here.parent if isinstance(here.parent, ast.Call) else None
     own = given is not None and isinstance(given.func, ast.Name)
     own = own and given is not None and called(given) not in (*SIZES, *ANGLES)
-    if value == 0 and scope.has_numpy and (own or measured(here.parent)):
+    if value in (0, 1) and _is_last_of_a_point(here):
+        yield here.within(here.node, "value", type(value)(1 - value), "number", _OF_A_POINT)
+    if value == 0 and scope.has_numpy and (own or measured(here.parent) or _is_an_angle(here)):
         half: ast.expr = ast.BinOp(PI, ast.Div(), number(2))
         minus = ast.BinOp(ast.UnaryOp(ast.USub(), PI), ast.Div(), number(2))
         for turned in (half, minus):

@@ -18,6 +18,8 @@ _FEW = 8
 """Attributes among which a wrong one is looked for early."""
 _OF_ITS_MASS = 0.015
 """What it costs less where the mass of its link stands beside it."""
+_AT_THE_END = 0.08
+"""What a length costs more that would carry the mass of its own link, as its centre does."""
 _OF_ROD = 0.04
 """What that costs more in a rod's moment of inertia, whose number is as soon mistaken."""
 _OF_ANOTHER = 0.1
@@ -55,12 +57,15 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
             kind = "index" if near and _letters(other) == _letters(node.id) else "name"
             beside = other in scope.beside.get(node.id, ())
             cost = 1.1 if near else 1.14 if beside else 1.25
-            cost = _NUMBERED if kind == "index" and node.id[-1].isdigit() else cost
+            digits = node.id[len(_letters(node.id)) :]
+            cost = _NUMBERED if kind == "index" and len(digits) == 1 else cost
             if cost > _IN_LINE and other in scope.names_in(statement_of(here.above)):
                 cost = _IN_LINE  # of what stands in one line one is taken for another
             if scope.are_halves(other, node.id):
                 cost = _HALF + _OF_ROD * _in_a_rods_moment(here)
-                cost -= _OF_ITS_MASS * _is_of_the_mass(here, other)
+                of_mass = _is_of_the_mass(here, other)
+                longer = abs(scope.level_of(other)) > abs(scope.level_of(node.id))
+                cost += (_AT_THE_END if longer else -_OF_ITS_MASS) * of_mass
                 cost += _OF_ANOTHER * _is_a_centre_of_another(here, scope, other)
             elif _carries_another(here, other):
                 cost = _HALF

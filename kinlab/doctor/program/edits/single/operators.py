@@ -55,7 +55,7 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             yield here.instead(ast.BinOp(right, op, left), "order", 1.05)
         for new in chains.together(node):
             turned = isinstance(getattr(new, "op", None), ast.MatMult)
-            yield here.instead(new, "parentheses", _TURNED if turned else 1.1)
+            yield here.instead(new, "parentheses", _TURNED if turned else 1.07)
         for new in chains.multiplied(node):
             yield here.instead(new, "operator", 1.12)
         if all(len(observed.shape(side) or ()) == 2 for side in (left, right)):
