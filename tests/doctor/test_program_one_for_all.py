@@ -189,7 +189,81 @@ def f(q, qd, tau):
     return np.array([x[0], x[1] - x[0], x[2] - x[1]])
 """
 
+WHOLE = """
+from numpy import array, cos
+
+def f(q):
+    m1, m2, m3 = 3, 2, 1
+    l1, l2, l3 = .5, .4, .25
+    r1, r2, r3 = l1/2, l2/2, l3/2
+    c2, c3, c23 = cos(q[1]), cos(q[2]), cos(q[1] + q[2])
+    C = m3*l3**2/12 + m3*r3**2
+    B = m2*l2**2/12 + m2*r2**2 + m3*l2**2 + 2*m3*l2*r3*c3 + C
+    A = m1*l1**2/12 + m1*r1**2 + (m2 + m3)*l1**2 + 2*m2*l1*r2*c2
+    A += 2*m3*l1*(l2*c2 + r3*c23) + B
+    D, E = C + m3*l2*r3*c3, C + m3*l2*r3*c3 + m3*l1*r3*c23
+    F = B + m2*l1*r2*c2 + m3*l1*(l2*c2 + r3*c23)
+    return array([[A, F, E], [F, B, D], [E, D, C]])
+"""
+TURNS = """
+import numpy as np
+
+class Arm:
+    A = (0, 0, 0, 0.0825, -0.0825, 0, 0.088)
+    D = (0.333, 0, 0.316, 0, 0.384, 0, 0)
+    ALPHA = np.deg2rad([0, -90, 90, 90, -90, 90, 90])
+
+    @staticmethod
+    def rot_x(t):
+        c, s = np.cos(t), np.sin(t)
+        return np.array([[1, 0, 0, 0], [0, c, -s, 0], [0, s, c, 0], [0, 0, 0, 1]])
+
+    @staticmethod
+    def rot_z(t):
+        c, s = np.cos(t), np.sin(t)
+        return np.array([[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+
+    @staticmethod
+    def moved(x, z):
+        T = np.eye(4)
+        T[0, 3], T[2, 3] = x, z
+        return T
+
+    def pose(self, q):
+        T = np.eye(4)
+        for k in range(7):
+            T = T @ self.rot_x(self.ALPHA[k]) @ self.moved(self.A[k], 0)
+            T = T @ self.rot_z(q[k]) @ self.moved(0, self.D[k])
+        return T @ self.moved(0, 0.107)
+
+f = Arm().pose
+"""
+HEIGHTS = """
+import numpy as np
+A, ALPHA = np.array([0, 0.45, 0.35]), np.array([0, 0, np.pi/2])
+MASS = [3.0, 2.0, 1.2]
+COM = [[0.2, 0.02, -0.01], [0.15, -0.01, 0.03], [0.12, 0.03, 0.01]]
+
+def f(q):
+    T, frames = np.eye(4), []
+    for k in range(3):
+        c, s, ca, sa = np.cos(q[k]), np.sin(q[k]), np.cos(ALPHA[k]), np.sin(ALPHA[k])
+        T = T @ np.array([[c, -s, 0, A[k]], [s*ca, c*ca, -sa, 0], [s*sa, c*sa, ca, 0], [0, 0, 0, 1]])
+        frames.append(T)
+    tau = np.zeros(3)
+    for k in range(3):
+        p = (frames[k] @ np.r_[COM[k], 1])[:3]
+        for j in range(k + 1):
+            tau[j] += MASS[k]*9.81*np.cross(frames[j][:3, 2], p - frames[j][:3, 3])[2]
+    return tau
+"""
+
 _CASES = [
+    (WHOLE, "planar3r", "mass_matrix", [("(m2 + m3)*l1**2", "m2*l1**2")]),
+    (WHOLE, "planar3r", "mass_matrix", [("2*m3*l2*r3*c3", "m3*l2*r3*c3")]),
+    (TURNS, "panda", "fk", [("self.rot_x(self.ALPHA[k])", "self.rot_z(self.ALPHA[k])")]),
+    (HEIGHTS, "spatial3r", "gravity_torques", [("np.r_[COM[k], 1]", "np.r_[COM[k], 0]")]),
+    (HEIGHTS, "spatial3r", "gravity_torques", [("[s*ca, c*ca, -sa, 0]", "[s, c*ca, -sa, 0]")]),
     (STANFORD, "stanford", "jacobian", [("= 0 if slides[k] else axis", "= axis")]),
     (STANFORD, "stanford", "jacobian", [("axis if slides[k] else np.cross", "np.cross")]),
     (ENERGY, "planar3r", "kinetic_energy", [("phi[j] - phi[k]", "q[j] - q[k]")]),
@@ -257,3 +331,9 @@ def test_a_rotation_is_transposed_and_no_row_times_it(tmp_path) -> None:
     slip = ("c = R @ COM[k]", "c = R.T @ COM[k]")
     told = _told(RATES, "spatial3r", "forward_dynamics", slip, tmp_path / "hand.py")
     assert "R @ COM[k]" in told.split("should be")[1]
+
+
+def test_whole_masses_with_names_are_the_arm_s(tmp_path) -> None:
+    slip = ("(m2 + m3)*l1**2", "m2*l1**2")
+    told = _told(WHOLE, "planar3r", "mass_matrix", slip, tmp_path / "hand.py")
+    assert "m3" in told.split("should be")[1]  # m1 is 3, too

@@ -137,6 +137,28 @@ def test_another_derivative_is_no_answer(quantity: str, text: str) -> None:
             "M[0][1] = m2*l2*(l2 + l1*c2);\nM[1][0] = M[0][1];\nM[1][1] = m2*l2*l2;",
         ),
         ("planar2r", "mass_matrix[1,1]", "M22 = m2*l2**2  # the outer link alone"),
+        ("scara", "mass_matrix[2,2]", "m3 + m4 + 2.0  (2.0 kg from the rotor)"),
+        (
+            "stanford",
+            "fk[2,3]",
+            "pz = 0.412 + d3 cosθ2 + 0.263 (cosθ2 cosθ5 − sinθ2 sinθ4 sinθ5)",
+        ),
+        (
+            "planar2r",
+            "planar_pose[0]",
+            r"**Pose:** $$x = l_1\cos\theta_1 + l_2\cos(\theta_1+\theta_2)$$",
+        ),
+        (
+            "single_link",
+            "inverse_dynamics",
+            "(I + m*s^2)*phidd + m*g*s*cos(phi), s = l/2, I = m*l^2/12",
+        ),
+        ("spatial3r", "jacobian[2,2]", r"J_{33}=L_3\cos\theta_3"),
+        (
+            "planar2r_rods",
+            "mass_matrix[0,0]",
+            r"I_1 + I_2 + m_1 a_{c1}^2 + m_2\left(a_1^2 + a_{c2}^2 + 2 a_1 a_{c2} c_2\right)",
+        ),
     ],
 )
 def test_what_can_be_read_in_one_way_alone(robot: str, quantity: str, text: str) -> None:
@@ -149,6 +171,8 @@ def test_what_can_be_read_in_one_way_alone(robot: str, quantity: str, text: str)
         ("mass_matrix[0,1]", "m2*l2**2 + m2*l1*l2*cos(theta[2](t))"),
         ("kinetic_energy", "T = 1/2*(m1+m2)*l1^2*omega1^2 + 1/2*m2*l2^2*omega2^2"),
         ("fk[0,1]", "R21 = -sin(q1+q2)"),
+        ("fk[0,3]", "l1*cos(q1) + l2*cos(q1+q2), in millimetres"),
+        ("mass_matrix[1,1]", "m2*l2^2  (without the rotor)"),
         ("gravity_torques[0]", r"\tau_{g2} = m_2 g l_2 c_{12}"),
         ("mass_matrix[1,1]", "M22 = m2*l2**2  # wrong, should be I2 + m2*lc2**2"),
         ("lagrangian", f"{_ENERGY.format(w='qd', f='cos')} is the total energy"),
