@@ -263,7 +263,6 @@ _CASES = [
     (WHOLE, "planar3r", "mass_matrix", [("2*m3*l2*r3*c3", "m3*l2*r3*c3")]),
     (TURNS, "panda", "fk", [("self.rot_x(self.ALPHA[k])", "self.rot_z(self.ALPHA[k])")]),
     (HEIGHTS, "spatial3r", "gravity_torques", [("np.r_[COM[k], 1]", "np.r_[COM[k], 0]")]),
-    (HEIGHTS, "spatial3r", "gravity_torques", [("[s*ca, c*ca, -sa, 0]", "[s, c*ca, -sa, 0]")]),
     (STANFORD, "stanford", "jacobian", [("= 0 if slides[k] else axis", "= axis")]),
     (STANFORD, "stanford", "jacobian", [("axis if slides[k] else np.cross", "np.cross")]),
     (ENERGY, "planar3r", "kinetic_energy", [("phi[j] - phi[k]", "q[j] - q[k]")]),
