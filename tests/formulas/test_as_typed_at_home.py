@@ -183,3 +183,22 @@ def test_what_can_be_read_in_one_way_alone(robot: str, quantity: str, text: str)
 def test_what_may_be_another_is_refused(quantity: str, text: str) -> None:
     with pytest.raises(KinlabError):
         _agrees("planar2r", quantity, text)
+
+
+_L = (
+    "1/2*(m1+m2)*l1^2*dq1^2 + 1/2*m2*l2^2*(dq1+dq2)^2 + m2*l1*l2*dq1*(dq1+dq2)*cos(q2)"
+    " - (m1+m2)*g*l1*sin(q1) - m2*g*l2*sin(q1+q2)"
+)
+
+
+@pytest.mark.parametrize(
+    ("quantity", "text"),
+    [
+        ("lagrangian", f"L = T - V = {_L}, T is the kinetic energy"),
+        ("gravity_torques[1]", "m2*g*l2*cos(q1+q2), the derivative of the potential energy"),
+        ("inverse_dynamics[1]", rf"\tau_2 = {_TAU2}, the last term is the gravity torque"),
+        ("mass_matrix[1,1]", "M22 = m2*l2^2, das ist das zweite Element der Massenmatrix"),
+    ],
+)
+def test_words_of_its_terms_deny_nothing(quantity: str, text: str) -> None:
+    assert _agrees("planar2r", quantity, text)

@@ -240,9 +240,10 @@ _ENERGY = (
     r"|énergie\s+(?:totale|mécanique)"
 )
 _SAYS_BEHIND = (
-    r"(?:^|[^\w]|\b(?:this|that|it|which|das|dies|und|sondern|这|ce|c['’]))\s*"
-    r"(?:(?:is|ist|sondern|est)\s+|是\s*)(?:the\s+|die\s+|das\s+|der\s+|l['’])?(?:{noun})"
+    r"(?:(?:(?<=[)\]}}])|\b(?:this|that|it|which|das|dies|ce|c['’]))\s*(?:is|ist|est)\s+"
+    r"|\bsondern\s+|[这它]是\s*)(?:the\s+|die\s+|das\s+|der\s+|l['’])?(?:{noun})"
 )
+"""The same behind it: ``This is the total energy``."""
 _SAYS = (
     r"(?:^|[.;。\n])\s*(?:(?:the|our|its|die|das|der|la|l['’])\s+)?(?:{noun})"
     r"(?:\s+(?:is|are|reads|ist|lautet|est|vaut|becomes)|\s*[:：为是])?(?:\s+given\s+by)?\s*[:：]?\s*$"
