@@ -47,6 +47,8 @@ from kinlab.host.language import N_, _
 from kinlab.tolerances import TOLERANCES
 
 _FEWEST = 10
+_FELT = 1e-9
+"""Of a wrench's largest part: less of a torque is none."""
 """States that :func:`prepare` asks for at least."""
 
 _FILE_LIMIT = 1 << 20
@@ -301,11 +303,12 @@ def _by_quantity(
     for plain, formulas in wanted.items():
         answers = _answers(plain, formulas, titles, robot, file, samples, seed)
         done[plain] = list(_of_quantity(plain, answers, titles, file.parts))
+        in_tool_axes = False
         if plain == "statics" and not all(one.agrees for one in done[plain]):
             turned = _in_tool_axes(formulas, titles, robot, file, samples, seed)
             settled = [all(x.agrees or x.known for x in found) for found in (done[plain], turned)]
             if all(one.agrees for one in turned) or settled == [False, True]:
-                done[plain] = turned
+                done[plain], in_tool_axes = turned, True
             felt = False
             for force in WRENCH:
                 there = _answers(plain, formulas, titles, robot, file, samples, seed, (force,))
@@ -318,28 +321,38 @@ def _by_quantity(
                     replace(one, causes=()) if _lost([one], formulas) else one
                     for one in done[plain]
                 ]
-        elif plain == "statics":
-            said = _without_forces(answers[1], formulas, titles, robot, file, samples, seed)
+        told = all(one.agrees or one.causes for one in done[plain])
+        if "wrench" in answers[0].arguments and told and not in_tool_axes:
+            said = _without_forces(plain, answers, done[plain], titles, robot, file, samples, seed)
             done[plain] = [replace(one, remarks=(*one.remarks, *said)) for one in done[plain]]
     return done
 
 
 def _without_forces(
-    right: Array,
-    formulas: dict[str, Written],
+    plain: str,
+    right: Answers,
+    found: list[Diagnosis],
     titles: dict[str, str],
     robot: Mechanism,
     file: FormulaFile,
     samples: int,
     seed: int,
 ) -> tuple[str, ...]:
-    """What is said of right torques that have not all of the tool's forces and moments."""
+    """What is said of right torques that have not all of the tool's forces and moments.
+
+    Those of a formula are right or set right. A force that their joints do not feel is not missed.
+    """
+    case, engine, labels, formulas, _values = right
+    told = [cause for one in found for cause in one.causes[:1]]
     named = {name for text in formulas.values() for name in tree.names(text.node)}
+    named |= {name for one in told for text in one.corrected.values() for name in words_in(text)}
+    own = [labels.index(label) for label in formulas]
     felt = []
-    for force in WRENCH:
-        if force not in named:
-            there = _answers("statics", formulas, titles, robot, file, samples, seed, (force,))
-            felt += [force] if not np.array_equal(there[1], right) else []
+    for force in (one for one in WRENCH if one not in named):
+        there = _answers(plain, formulas, titles, robot, file, samples, seed, (force,))
+        more = (there[1] - engine).reshape(len(engine), -1)[:, own]
+        if np.abs(more).max() > _FELT * np.abs(case.arguments["wrench"]).max():
+            felt.append(force)
     said = _("it has no {forces} of the tool: as if there were none")
     return (said.format(forces=", ".join(felt)),) if felt else ()
 

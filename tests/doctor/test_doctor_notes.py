@@ -154,6 +154,34 @@ def test_statics_as_text(first: str, second: str, words: str) -> None:
     assert found.agrees == (not any(word in words for word in ("passive", "right", "should")))
 
 
+_X, _Y = "(l1*sin(q1) + l2*sin(q1+q2))*Fx", "(l1*cos(q1) + l2*cos(q1+q2))*Fy"
+_MOVING = "m2*l2^2*(ddq1+ddq2) + m2*l1*l2*(c2*ddq1+s2*dq1^2) + m2*l2*g*c12"
+_WITHOUT = [
+    ("planar2r", "statics[0]", f"tau1 = -{_X} + {_Y}", "nz"),
+    ("planar2r", "statics[0]", f"tau1 = -{_X} - {_Y}", "nz"),
+    ("planar2r", "statics[1]", "tau2 = -l2*sin(q1+q2)*Fx + l2*cos(q1+q2)*Fx", "nz"),
+    ("planar2r", "statics[0]", f"tau1 = -{_X} - {_Y} + Mz", ""),
+    ("scara", "statics[0]", f"tau1 = -{_X} + {_Y}", "nz"),
+    ("scara", "statics[2]", "tau3 = -Fz", ""),
+    ("scara", "statics[3]", "tau4 = -Mz", ""),
+    ("planar2r", "statics_tool[1]", "tau2 = l2*Fy", "nz"),
+    ("planar2r", "inverse_dynamics_loaded[1]", f"tau2 = {_MOVING}", "fx, fy, nz"),
+    ("planar2r", "tau2", f"tau2 = {_MOVING} - l2*s12*Fx + l2*c12*Fy", "nz"),
+    ("planar2r", "tau2", f"tau2 = {_MOVING} - l2*s12*Fx + l2*c12*Fy + Mz", ""),
+    ("planar2r", "inverse_dynamics[1]", f"tau2 = {_MOVING}", ""),
+]
+
+
+@pytest.mark.parametrize(("robot", "quantity", "text", "forces"), _WITHOUT)
+def test_a_force_that_its_joint_feels_and_no_line_has_is_said(
+    robot: str, quantity: str, text: str, forces: str
+) -> None:
+    found = kl.diagnose(robot, quantity, text)
+    assert found.agrees or found.causes
+    said = [remark for remark in found.remarks if "as if there were none" in remark]
+    assert said == ([f"it has no {forces} of the tool: as if there were none"] if forces else [])
+
+
 def test_a_torque_of_a_motion_with_a_force_at_the_tool() -> None:
     text = (
         "m2*l2**2*(qdd1+qdd2)+m2*l1*l2*c2*qdd1+m2*l1*l2*s2*qd1**2+m2*l2*g*c12-fx*l2*s12+fy*l2*c12"

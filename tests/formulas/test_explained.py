@@ -128,6 +128,7 @@ OF_SPATIAL = "a1*c1 + a2*c12 + L3*c12*c3"
         ("spatial3r", "x", f"L3 = 0.3; x = {OF_SPATIAL}"),
         ("spatial3r", "x", r"L_3 = 0.3; x = a_1 c_1 + a_2 c_{12} + L_3 c_{12} c_3"),
         ("spatial3r", "x", "L_1 = 0.45; L_3 = 0.3; x = L_1*c1 + a_2*c_12 + L_3*c_12*c3"),
+        ("spatial3r", "x", "L3 = 0.3; x = L1*c1 + a2*c12 + L3*c12*c3"),
         ("planar2r", "V", "L = 0.5; V = m1*g*L*s1 + m2*g*(L*s1 + l2*s12)"),
     ],
 )
@@ -136,12 +137,18 @@ def test_l_where_it_is_explained(robot, entry, text):
     assert not judged(entry, text.replace("0.3", "0.4").replace("m2*g", "m1*g"), robot).agrees
 
 
+def test_l3_is_the_length_l3_of_an_arm_that_has_one():
+    agrees("x", f"x = {OF_SPATIAL}", "spatial3r")
+    assert not judged("x", "x = a1*c1 + a2*c12 + L3*c1*c3", "spatial3r").agrees
+    assert not judged("x", "L3 = 0.4; x = a1*c1 + a2*c12 + L3*c12*c3", "spatial3r").agrees
+
+
 @pytest.mark.parametrize(
     ("robot", "entry", "text", "said"),
     [
         ("isotropic", "A1", "A1 = 2*L*(e - x)", "'L' is unknown"),
-        ("spatial3r", "x", f"x = {OF_SPATIAL}", "'L3' is unknown"),
-        ("spatial3r", "x", "L3 = 0.3; x = L1*c1 + a2*c12 + L3*c12*c3", "'L1' is unknown"),
+        ("spatial3r", "x", "x = L1*c1 + a2*c12 + L4*c12*c3", "'L4' is unknown"),
+        ("puma560", "x", "x = L3*c1", "'L3' is unknown"),
     ],
 )
 def test_l_where_it_is_not_explained_is_refused(robot, entry, text, said):

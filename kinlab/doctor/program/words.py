@@ -619,6 +619,7 @@ def _text(node: ast.AST) -> str:
 
 
 def _typed(text: str) -> str:
+    text = re.sub(r"(?<![\w)\]])--(?=\d)", "", text)  # a minus of a number that has one
     return re.sub(r" (\*\*|\*|/) ", r"\1", text)
 
 
