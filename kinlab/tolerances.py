@@ -255,6 +255,10 @@ class Tolerances:
     no_share: float = 1e-8
     """A term of a sum with less than this share of the largest is not in it."""
 
+    force_felt: float = 1e-9
+    """Torque in parts of a wrench's largest component, below which a joint does not feel a
+    component of it."""
+
     same_function: float = 1e-9
     """Two columns of unit length closer than this, up to their sign, are one function."""
 

@@ -47,8 +47,6 @@ from kinlab.host.language import N_, _
 from kinlab.tolerances import TOLERANCES
 
 _FEWEST = 10
-_FELT = 1e-9
-"""Of a wrench's largest part: less of a torque is none."""
 """States that :func:`prepare` asks for at least."""
 
 _FILE_LIMIT = 1 << 20
@@ -351,7 +349,7 @@ def _without_forces(
     for force in (one for one in WRENCH if one not in named):
         there = _answers(plain, formulas, titles, robot, file, samples, seed, (force,))
         more = (there[1] - engine).reshape(len(engine), -1)[:, own]
-        if np.abs(more).max() > _FELT * np.abs(case.arguments["wrench"]).max():
+        if np.abs(more).max() > TOLERANCES.force_felt * np.abs(case.arguments["wrench"]).max():
             felt.append(force)
     said = _("it has no {forces} of the tool: as if there were none")
     return (said.format(forces=", ".join(felt)),) if felt else ()
