@@ -301,6 +301,7 @@ def _by_quantity(
     for plain, formulas in wanted.items():
         answers = _answers(plain, formulas, titles, robot, file, samples, seed)
         done[plain] = list(_of_quantity(plain, answers, titles, file.parts))
+        with_one = _with_one_force(plain, answers, titles, robot, file, samples, seed)
         in_tool_axes = False
         if plain == "statics" and not all(one.agrees for one in done[plain]):
             turned = _in_tool_axes(formulas, titles, robot, file, samples, seed)
@@ -308,8 +309,7 @@ def _by_quantity(
             if all(one.agrees for one in turned) or settled == [False, True]:
                 done[plain], in_tool_axes = turned, True
             felt = False
-            for force in WRENCH:
-                there = _answers(plain, formulas, titles, robot, file, samples, seed, (force,))
+            for force, there in with_one.items():
                 if not np.array_equal(there[1], answers[1]):
                     felt = True
                     found = [*_of_quantity(plain, there, titles, file.parts)]
@@ -320,39 +320,55 @@ def _by_quantity(
                     for one in done[plain]
                 ]
         told = all(one.agrees or one.causes for one in done[plain])
-        if "wrench" in answers[0].arguments and told and not in_tool_axes:
-            said = _without_forces(plain, answers, done[plain], titles, robot, file, samples, seed)
+        if with_one and told and not in_tool_axes:
+            said = _without_forces(answers, with_one, done[plain])
             done[plain] = [replace(one, remarks=(*one.remarks, *said)) for one in done[plain]]
     return done
 
 
-def _without_forces(
+def _with_one_force(
     plain: str,
-    right: Answers,
-    found: list[Diagnosis],
+    answers: Answers,
     titles: dict[str, str],
     robot: Mechanism,
     file: FormulaFile,
     samples: int,
     seed: int,
+) -> dict[str, Answers]:
+    """The answers with each force and moment of the tool that no formula names."""
+    if "wrench" not in answers[0].arguments:
+        return {}
+    formulas = answers[3]
+    return {
+        force: _answers(plain, formulas, titles, robot, file, samples, seed, (force,))
+        for force in WRENCH
+        if force not in _named(formulas)
+    }
+
+
+def _without_forces(
+    right: Answers, with_one: dict[str, Answers], found: list[Diagnosis]
 ) -> tuple[str, ...]:
     """What is said of right torques that have not all of the tool's forces and moments.
 
     Those of a formula are right or set right. A force that their joints do not feel is not missed.
     """
-    case, engine, labels, formulas, _values = right
+    _case, engine, labels, formulas, _values = right
     told = [cause for one in found for cause in one.causes[:1]]
-    named = {name for text in formulas.values() for name in tree.names(text.node)}
-    named |= {name for one in told for text in one.corrected.values() for name in words_in(text)}
+    put = {name for one in told for text in one.corrected.values() for name in words_in(text)}
     own = [labels.index(label) for label in formulas]
     felt = []
-    for force in (one for one in WRENCH if one not in named):
-        there = _answers(plain, formulas, titles, robot, file, samples, seed, (force,))
+    for force, there in with_one.items():
         more = (there[1] - engine).reshape(len(engine), -1)[:, own]
-        if np.abs(more).max() > TOLERANCES.force_felt * np.abs(case.arguments["wrench"]).max():
+        size = np.abs(there[0].arguments["wrench"]).max()
+        if force not in put and np.abs(more).max() > TOLERANCES.force_felt * size:
             felt.append(force)
     said = _("it has no {forces} of the tool: as if there were none")
     return (said.format(forces=", ".join(felt)),) if felt else ()
+
+
+def _named(formulas: dict[str, Written]) -> set[str]:
+    return {name for text in formulas.values() for name in tree.names(text.node)}
 
 
 def _simpler(
@@ -572,8 +588,7 @@ def _answers(
         joints = joint_values(case, formulas, titles, file.path)
         return case, engine, list(joints), formulas, joints
     if "wrench" in case.arguments:
-        named = {name for text in formulas.values() for name in tree.names(text.node)}
-        case = named_alone(case, named.union(forces))
+        case = named_alone(case, _named(formulas).union(forces))
         engine = case.answer(())
     shape = engine.shape[1:]
     labels = [label_of(plain, k) for k in np.ndindex(shape)]

@@ -33,6 +33,7 @@ from kinlab.formulas.handed.clauses import Claim, Holds
 from kinlab.formulas.handed.columns import with_matrices
 from kinlab.formulas.handed.equations import solved
 from kinlab.formulas.handed.prose import Doubt, left_over
+from kinlab.formulas.handed.rates import MOVING
 from kinlab.formulas.handed.reading import as_formula
 from kinlab.formulas.signs.latex import LAMBDA
 from kinlab.formulas.signs.letters import WIDE
@@ -218,16 +219,13 @@ def formula_file(
 
 
 _STATIC = re.compile(r"(?:tau|u|Q)g?(\d?)")
-_RATES = re.compile(
-    r"(?<!c)dot|d{1,2}_?(?:q|th|theta)|(?:q|th|theta)_?d{1,2}|[\u0307\u0308]|diff|Derivative"
-)
 
 
 def _of_gravity(text: str, key: str) -> str:
     """``tau_2 = ...`` without its left side, where gravity's torque is asked for."""
     left, sign, right = text.partition("=")
     place = re.fullmatch(r"gravity_torques\[(\d)\]", key)
-    if not sign or not place or "=" in right or _RATES.search(right):
+    if not sign or not place or "=" in right or MOVING.search(right):
         return text
     try:
         found = _STATIC.fullmatch(typed.entry_name(left.strip("$& ")).replace("_", ""))

@@ -164,6 +164,7 @@ _WITHOUT = [
     ("scara", "statics[0]", f"tau1 = -{_X} + {_Y}", "nz"),
     ("scara", "statics[2]", "tau3 = -Fz", ""),
     ("scara", "statics[3]", "tau4 = -Mz", ""),
+    ("scara", "statics[3]", "tau4 = 0", "nz"),
     ("planar2r", "statics_tool[1]", "tau2 = l2*Fy", "nz"),
     ("planar2r", "inverse_dynamics_loaded[1]", f"tau2 = {_MOVING}", "fx, fy, nz"),
     ("planar2r", "tau2", f"tau2 = {_MOVING} - l2*s12*Fx + l2*c12*Fy", "nz"),

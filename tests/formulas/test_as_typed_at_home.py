@@ -185,6 +185,14 @@ def test_what_may_be_another_is_refused(quantity: str, text: str) -> None:
         _agrees("planar2r", quantity, text)
 
 
+@pytest.mark.parametrize("comment", ["# {}", "// {}", "/* {} */", "(* {} *)"])
+@pytest.mark.parametrize("words", [0, 60])
+def test_a_comment_is_read_to_its_end(comment: str, words: int) -> None:
+    said = comment.format("as on the board " * words + "and its sign is wrong")
+    with pytest.raises(KinlabError, match="may change"):
+        _agrees("planar2r", "gravity_torques[1]", f"g2 = m2*g*l2*cos(q1+q2)  {said}")
+
+
 _L = (
     "1/2*(m1+m2)*l1^2*dq1^2 + 1/2*m2*l2^2*(dq1+dq2)^2 + m2*l1*l2*dq1*(dq1+dq2)*cos(q2)"
     " - (m1+m2)*g*l1*sin(q1) - m2*g*l2*sin(q1+q2)"

@@ -69,6 +69,11 @@ def names(tree: ast.AST, context: type[ast.expr_context] = ast.expr_context) -> 
     return [node.id for node in found if isinstance(node.ctx, context)]
 
 
+def targets_of(line: ast.Assign | ast.AnnAssign | ast.AugAssign) -> list[ast.expr]:
+    """What a statement sets."""
+    return line.targets if isinstance(line, ast.Assign) else [line.target]
+
+
 def called(node: ast.Call) -> str:
     """The last name of what is called: ``cross`` of ``np.cross``."""
     target = node.func

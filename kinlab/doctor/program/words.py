@@ -15,7 +15,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.compare import relative_errors
 from kinlab.check.diagnosis import Cause
-from kinlab.doctor.bytecode.syntax import called, factors, nodes
+from kinlab.doctor.bytecode.syntax import called, factors, nodes, targets_of
 from kinlab.doctor.changes import Case, table_of
 from kinlab.doctor.program.cuts import cuts
 from kinlab.doctor.program.digits import of_rounded_numbers
@@ -722,8 +722,7 @@ def _idle(edit: ProgramEdit, repair: ProgramRepair, search: LineSearch) -> Progr
     line = _statements(tree).get(id(edit.node))
     if not isinstance(line, ast.Assign | ast.AugAssign):
         return None
-    targets = line.targets if isinstance(line, ast.Assign) else [line.target]
-    target, value = targets[0], ast.unparse(line.value)
+    target, value = targets_of(line)[0], ast.unparse(line.value)
     if not isinstance(target, ast.Subscript):
         return None
     place = ast.unparse(target)

@@ -43,6 +43,10 @@ _CALLED = re.compile(r"(?<![\w.\\])(d{1,2})ot\(\s*(q|th|theta|θ)_?(\d?)\s*\)")
 """Of an arm's only joint too: ``theta''``, ``ddot(theta)``."""
 _POINT_IN_WAVE = re.compile(r"(?:sin|cos|tan)\([^()]*(?:q|th|theta)_?\d_?p{1,2}(?!\w)")
 """q1p in a cosine is an angle."""
+MOVING = re.compile(
+    r"(?<!c)dot|d{1,2}_?(?:q|th)|(?:q|th|theta)_?d{1,2}|[\u0307\u0308]|diff|Derivative|''"
+)
+"""What says that something moves, as it is typed."""
 _ORDERS = re.compile(r"(?<![\w.\\])D([12]?)(q|th|theta)_?(\d)(?!\w)")
 _EXPLAINED = re.compile(r"(?<![\w.\\])(\w+)\s*:?=(?!=)")
 _TIME = re.compile(r"(?<![A-Za-z])(?:t|dt)(?![A-Za-z])")

@@ -11,7 +11,7 @@ from kinlab.formulas.handed.columns import of_column
 from kinlab.formulas.handed.constants import without_constant
 from kinlab.formulas.handed.letters import plain_letters, siciliano_s_letters, without_marks
 from kinlab.formulas.handed.prose import doubtful
-from kinlab.formulas.handed.rates import plain_rates
+from kinlab.formulas.handed.rates import MOVING, plain_rates
 from kinlab.formulas.handed.units import without_units
 from kinlab.formulas.handed.words import (
     refuse_comments,
@@ -42,9 +42,6 @@ _MEANS = re.compile(
     r"(?<==)([^=]+?)[,，;；]\s*(?=\$?[lLmI]_?\{?c?\d\}?\$?\s*(?:为|是|表示|(?:is|are|denotes?|being|ist)\s))"
 )
 """What explains a name behind a formula without saying where: ``x = ..., l1 is the length``."""
-_MOVING_RATES = re.compile(
-    r"(?<!c)dot|d{1,2}_?(?:q|th)|(?:q|th|theta)_?d{1,2}|[\u0307\u0308]|diff|Derivative|''"
-)
 _STATIC_TORQUE = re.compile(
     r"(?:(?P<typeset>\\tau)|(?<![A-Za-z\\])(?:tau|τ))_?(?:\{\s{0,2}g?\s{0,2},?\s{0,2}(?P<a>[1-9])\s{0,2}\}"
     r"|g?_?(?P<b>[1-9₁-₉]))(?![\w])"
@@ -143,7 +140,7 @@ def as_formula(
     text = _TWICE.sub(lambda found: f"{found['name']}{found['again']}", text)
     text = _ON_A_LINE.sub(" ", _REMARK.sub(r"\1: ", text))
     text = _PLACE_BELOW.sub(r"_{\1\2}", text)
-    if entry.startswith("gravity_torques") and not _MOVING_RATES.search(text):
+    if entry.startswith("gravity_torques") and not MOVING.search(text):
         text = _STATIC_TORQUE.sub(_of_gravity, text)
     text = _NUMBERS.sub(lambda found: f"{_BETWEEN.sub('; ', found[1]).rstrip('; ')}; ", text)
     text = _MEANS.sub(r"\1, where ", _SCORE.sub(" ", text), count=1)

@@ -11,7 +11,7 @@ from typing import TypeGuard
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import called, copied, names, nodes, text_of
+from kinlab.doctor.bytecode.syntax import called, copied, names, nodes, targets_of, text_of
 from kinlab.doctor.program.edits.additions import OtherName
 from kinlab.doctor.program.edits.scope.forms import statement_of, summands
 from kinlab.doctor.program.edits.scope.part import Scope, standing
@@ -133,14 +133,10 @@ def _is_transported(term: ast.expr, here: Here) -> bool:
     turning, rate = map(text_of, term.args)
     axes = [text_of(one.right) for one in summands(here.node) if _is_scaled(one)]
     lines = [one for one in nodes(here.above[0]) if isinstance(one, ast.Assign | ast.AugAssign)]
-    sums = (one.value for one in lines if turning in map(text_of, _targets(one)))
+    sums = (one.value for one in lines if turning in map(text_of, targets_of(one)))
     return text_of(term.args[-1].right) in axes and any(
         rate in map(text_of, summands(one)) for one in sums
     )
-
-
-def _targets(line: ast.Assign | ast.AugAssign) -> list[ast.expr]:
-    return line.targets if isinstance(line, ast.Assign) else [line.target]
 
 
 def _is_scaled(node: ast.expr) -> TypeGuard[ast.BinOp]:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from types import FunctionType
 from typing import Any
 
-from kinlab.doctor.bytecode.syntax import called
+from kinlab.doctor.bytecode.syntax import called, targets_of
 from kinlab.doctor.program.own.loaded import setting
 
 _WRAPPING = ("array", "asarray", "float64", "tuple", "list")
@@ -44,7 +44,7 @@ def line_of(function: FunctionType, name: str, place: Sequence[Any]) -> int | No
 
 def _given(line: ast.Assign | ast.AnnAssign, name: str) -> ast.expr | None:
     """What a statement gives one of the names that it sets."""
-    for target in line.targets if isinstance(line, ast.Assign) else [line.target]:
+    for target in targets_of(line):
         if isinstance(target, ast.Name) and target.id == name:
             return line.value
         names = [getattr(one, "id", None) for one in getattr(target, "elts", ())]

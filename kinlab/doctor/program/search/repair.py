@@ -262,7 +262,7 @@ class LineSearch:
                     doubted = doubted or self.evidence.coincident(edit)
             found = found or ([] if self.stand else self.parallel[:1])
             found = self._by_name(self._by_evidence(found))
-            found = [self.as_it_is_named(one) for one in found[:1]] + found[1:]
+            found = self.as_named(found)
             if not self.stand or below < np.inf:
                 found = in_company(found, self.likely, SAME, self.trial, _beside)
             found = self._beside_data(found)
@@ -420,8 +420,11 @@ class LineSearch:
                 return other
         return first
 
-    def as_it_is_named(self, repair: ProgramRepair) -> ProgramRepair:
-        """The same with the name to which what is put in was set before: ``Ia`` for its sum."""
+    def as_named(self, found: list[ProgramRepair]) -> list[ProgramRepair]:
+        """The first with the names to which what is put in was set before: ``Ia`` for its sum."""
+        return [self._as_named(one) for one in found[:1]] + found[1:]
+
+    def _as_named(self, repair: ProgramRepair) -> ProgramRepair:
         own = repair.edits[len(self.stand) :]
         for k, edit in enumerate(own):
             other = self._named(edit)
@@ -431,7 +434,7 @@ class LineSearch:
             with changed(self.trial, several):
                 named = self.verdict((*self.stand, *several))
             if named is not None:
-                return self.as_it_is_named(replace(named, rivals=repair.rivals))
+                return self._as_named(replace(named, rivals=repair.rivals))
         return repair
 
     def _named(self, edit: ProgramEdit) -> ProgramEdit | None:

@@ -103,7 +103,7 @@ def several(search: LineSearch) -> list[ProgramRepair]:
         found = looking.of_fewer(
             search, [_reduced(repair, search) for repair in looking.found(search)]
         )
-        found = [search.as_it_is_named(one) for one in found[:1]] + found[1:]
+        found = search.as_named(found)
     if getattr(search.case.robot, "n", 0) == 1:  # two terms, which any three edits make right
         found = [one for one in found if len(one.edits) <= _DEEPEST]
     return found or _right_here(search)

@@ -131,7 +131,7 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
                 for other in (ast.Add(), ast.Sub()):
                     yield here.within(node, "op", other, "operator", 1.16)
             square = matrices[1] is not None and len(matrices[1]) == 2
-            if square and isinstance(left, ast.Constant) and left.value == 2:
+            if square and _is_two(left):
                 across = ast.Attribute(right, "T", ast.Load())
                 yield here.instead(ast.BinOp(right, ast.Add(), across), "transposed", 1.08)
             if not (
