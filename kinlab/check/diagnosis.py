@@ -45,6 +45,8 @@ ENTRY_LETTERS = {
     "potential_energy": "V",
 }
 """What a quantity is called where its entries have no other name."""
+PLANAR_POSE = {"0": "x", "1": "y", "2": "cos(phi)", "3": "sin(phi)"}
+"""What the entries of a planar pose are."""
 
 _ENTRY = re.compile(r"(\w+)\[([0-8](?:,[0-8])*)\]")
 _OTHERS = 3
@@ -327,6 +329,8 @@ def shown_entry(label: str) -> str:
     found = _ENTRY.fullmatch(label)
     if found is None:
         return label
+    if found[1] == "planar_pose" and found[2] in PLANAR_POSE:
+        return PLANAR_POSE[found[2]]
     places = [str(int(k) + 1) for k in found[2].split(",")]
     letter = ENTRY_LETTERS.get(found[1])
     return letter + "".join(places) if letter else f"{found[1]}({','.join(places)})"

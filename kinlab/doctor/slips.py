@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 from itertools import product
 
 import numpy as np
@@ -72,9 +72,10 @@ def slips_in(
     open_ = [(entry, one) for entry, one in some if entry.label in few]
     several = _with_more(case, every, open_, written, Definitions.with_one_more)
     if len(off) == len(own) == 1 and not few:  # is one of the two likelier in a definition?
-        either = _with_more(case, every, some, written, Definitions.with_one_more)
-        one = min(own[off[0].label], key=lambda slip: slip.cost)
-        several = either if sum(found[0].cost for found in either) < one.cost - _NO_DOUBT else []
+        below = min(slip.cost for slip in own[off[0].label]) - _NO_DOUBT
+        likelier = partial(Definitions.with_one_more, below=below)
+        either = _with_more(case, every, some, written, likelier)
+        several = either if sum(found[0].cost for found in either) < below else []
     per_entry = several or [*([one] for one in defined), *_per_entry(case, off, written, few)]
     if not all(per_entry) and isinstance(reference_of(case), Derivation):
         per_entry = _with_more(case, every, open_, written, Definitions.with_two_more) or per_entry

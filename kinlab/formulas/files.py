@@ -37,7 +37,13 @@ from kinlab.formulas.handed.rates import MOVING
 from kinlab.formulas.handed.reading import as_formula
 from kinlab.formulas.signs.latex import LAMBDA
 from kinlab.formulas.signs.letters import WIDE
-from kinlab.formulas.signs.named import LastJoint, is_another, is_another_slope, is_craigs_last
+from kinlab.formulas.signs.named import (
+    LastJoint,
+    is_another,
+    is_another_slope,
+    is_craigs_last,
+    without_its_axes,
+)
 from kinlab.formulas.signs.refusals import refused
 from kinlab.formulas.text import LENGTH, parse, tidied
 from kinlab.formulas.tree import Node
@@ -150,9 +156,8 @@ def formula_file(
     doubts: dict[str, tuple[str, list[tuple[str, str]]]] = {}
     for key, value in list(entries.items()):
         at = f"{place}: {key}"
-        entries[key], remarks[key], told = as_formula(
-            _text(value, at), key, at, holds, key in whole
-        )
+        text = _text(value, at) if last is None else without_its_axes(_text(value, at), key, last)
+        entries[key], remarks[key], told = as_formula(text, key, at, holds, key in whole)
         doubts[key] = _text(value, at), told
         entries[key] = typed.as_column(entries[key], key)
         parts = {} if key in whole else typed.several(entries[key], key)

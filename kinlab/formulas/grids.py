@@ -233,7 +233,7 @@ def _terms(held: str, place: str) -> Iterator[tuple[str, str]]:
     yield sign, term
 
 
-_TIMES = r"(?:\s|\*|@|\\cdot(?![A-Za-z])|\\[,;:!]|~|&)*"
+_TIMES = r"(?:\s|\*|·|⋅|×|@|\\cdot(?![A-Za-z])|\\[,;:!]|~|&)*"
 
 
 def _factor(piece: str, place: str, dollars: str) -> str:

@@ -258,7 +258,38 @@ def f(q):
     return tau
 """
 
+ROWS = """
+from math import sin, cos
+
+def f(q):
+    r1, r2, r3 = 0.5, 0.4, 0.25
+    a, b, c = q[0], q[0] + q[1], q[0] + q[1] + q[2]
+    return [
+        [-r1*sin(a) - r2*sin(b) - r3*sin(c), -r2*sin(b) - r3*sin(c), -r3*sin(c)],
+        [r1*cos(a) + r2*cos(b) + r3*cos(c), r2*cos(b) + r3*cos(c), r3*cos(c)],
+        [1, 1, 1],
+    ]
+"""
+TABLE = """
+import numpy as np
+
+def turned(angle, twist, a, d):
+    c, s, ca, sa = np.cos(angle), np.sin(angle), np.cos(twist), np.sin(twist)
+    return np.array([[c, -s*ca, s*sa, a*c], [s, c*ca, -c*sa, a*s], [0, sa, ca, d], [0, 0, 0, 1]])
+
+def f(q):
+    table = [(q[0], -np.pi/2, 0, 0.412), (q[1], np.pi/2, 0, 0.154), (-np.pi/2, 0, 0.0203, q[2]),
+             (q[3], -np.pi/2, 0, 0), (q[4], np.pi/2, 0, 0), (q[5], 0, 0, 0.263)]
+    T = np.eye(4)
+    for row in table:
+        T = T @ turned(*row)
+    return T
+"""
 _CASES = [
+    (ROWS, "planar3r", "planar_jacobian", [(" -r2*sin(b) - r3*sin(c), -r3", " -r1*sin(a) - r3*sin(c), -r3")]),
+    (ROWS, "planar3r", "planar_jacobian", [(" r2*cos(b) + r3*cos(c), r3", " r2*cos(b) + r1*cos(a), r3")]),
+    (TABLE, "stanford", "fk", [("(q[3], -np.pi/2", "(q[3], -90")]),
+    (TABLE, "stanford", "fk", [("(-np.pi/2, 0, 0.0203", "(-90, 0, 0.0203")]),
     (WHOLE, "planar3r", "mass_matrix", [("(m2 + m3)*l1**2", "m2*l1**2")]),
     (WHOLE, "planar3r", "mass_matrix", [("2*m3*l2*r3*c3", "m3*l2*r3*c3")]),
     (TURNS, "panda", "fk", [("self.rot_x(self.ALPHA[k])", "self.rot_z(self.ALPHA[k])")]),

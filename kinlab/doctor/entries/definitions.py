@@ -6,6 +6,7 @@ whole formula is worked out, at numbers that are not the robot's.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -26,6 +27,8 @@ from kinlab.tolerances import TOLERANCES
 
 _MOST = 300
 """Changes of one text that are tried with those of another, the likeliest."""
+_TRIED = 12_000
+"""Changes that are tried in all of two texts, half of them in the formula; eight names have all."""
 _NOTED = 30_000
 """Changes that may be noted where two more are looked for."""
 _FEW = 5
@@ -153,17 +156,28 @@ class Definitions:
             for k in self._right(whole, self.line.target):
                 yield self._slip(part, int(k), _put(self.told, part.name, part.texts[k]))
 
-    def with_one_more(self) -> list[tuple[Slip, ...]]:
+    def with_one_more(self, below: float = math.inf) -> list[tuple[Slip, ...]]:
         """Changes of a definition, and perhaps of another one, beside which one more is right.
 
-        The likeliest first; what is to be changed in the formula itself is left out.
+        Args:
+            below: what the two must cost less than.
+
+        Returns:
+            The likeliest first; what is to be changed in the formula itself is left out.
         """
         few = {name: x[:_FEW] for name, x in self.line.at.items()}
         found: list[tuple[float, int, tuple[Slip, ...]]] = []
+        count = len(self.parts)
+        of_formula = min(_MOST, _TRIED // 2 // max(count, 1))
+        of_others = min(_MOST, _TRIED // max(count * (count - 1), 1))
         for n, part in enumerate(self.parts):
             instead = _Instead(part.name, part.values[:_MOST, :_FEW], few)
             for other in (self.formula, *self.parts[n + 1 :]):
-                for k, new in enumerate(other.texts[:_MOST]):
+                most = of_others if other.name else of_formula
+                least = min((one.cost for one in part.changes), default=0.0)
+                for k, new in enumerate(other.texts[:most]):
+                    if least + other.changes[k].cost >= below:
+                        continue
                     whole = instead.of(_put(self.line.text, other.name, new))
                     for j in map(int, self._right(whole, self.line.target[:_FEW])):
                         both = self._both(part, j, other, k)

@@ -197,6 +197,8 @@ _KINDS = (
 """What has one unit. Things of different units that have one value (a mass of 1 kg makes force and
 acceleration alike) leave it without a name; what is not listed goes with any."""
 
+_OF_POINTS = ("coordinate", "centre_coordinate", "tool_coordinate")
+"""Coordinates of points in the base, which move with the arm."""
 _CELLS = ("cell", "mass", "centre_distance", "Izz", "joint_Izz")
 """The arm's own numbers, which do not vary: of these, sums and products may meet another."""
 
@@ -226,6 +228,8 @@ def meaning_of(known_at_states: Sequence[Glossary], values: Sequence[Array]) -> 
     kinds = {k for *_rank, sense in found for k, kind in enumerate(_KINDS) if sense.what in kind}
     if len(kinds) > 1:
         return None
+    if seen[0].ndim == 0 and all(one == seen[0] for one in seen):  # what never moves is typed
+        found = [one for one in found if one[2].what not in _OF_POINTS]
     best = min((rank, k) for rank, k, _sense in found) if found else None
     return _one(known_at_states[0], [x for *rank, x in found if tuple(rank) == best], seen[0])
 

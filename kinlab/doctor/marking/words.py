@@ -97,6 +97,7 @@ KINDS: dict[str, str] = {
     N_("extra statement"): N_("a line is one too many"),
     N_("condition"): N_("a condition is off"),
     N_("entries swapped"): N_("two entries are exchanged"),
+    N_("another term"): N_("a term stands where another belongs"),
     N_("names exchanged"): N_("two names are exchanged"),
     N_("columns swapped"): N_("two columns are exchanged"),
     N_("reversed"): N_("numbers stand in the reverse order"),

@@ -100,6 +100,7 @@ _WHAT = {
     "missing argument": N_("an argument is missing"),
     "kind of joint": N_("it is a hinge's column, and the joint is a slide"),
     "missing entry": N_("the entry across from it is to be set, too"),
+    "another term": N_("the term is another"),
     "missing matrix": N_("the product with a rotation or another matrix is missing"),
 }
 

@@ -31,6 +31,8 @@ _OF_CENTRE = re.compile(r"I(?:C|c|G|S|cm)(\d)")
 """I_{C_1} and I_{G1}: the inertia about the centre of mass, which the robot's I1 is."""
 _FIRST = {"w1": "qd1", "alpha1": "qdd1"}
 """Of the first link, which turns as its joint does; of others it may be the link or the joint."""
+_ONLY = {"L": "l", "M": "m"}
+"""Capitals of an arm of one link, where they are not the Lagrangian or the mass matrix."""
 _MAY_MOVE = re.compile(r"a\d")
 """A length, or an acceleration."""
 NOTHING = "0"
@@ -83,7 +85,7 @@ def with_habits(file: FormulaFile, robot: Mechanism) -> FormulaFile:
         if not found and plain[0] == "L" and (own := plain.lower()) in named.others:
             found = as_text(named.others[own])  # L3 of l3, where that is the tool's
         if not found and robot.n == 1:  # m and l of the only link
-            alone = f"{plain}1"
+            alone = f"{_ONLY.get(plain, plain)}1"
             if tree.names(canonical(alone)) <= motion | words | given:
                 found = alone
             elif alone in named.others:

@@ -56,9 +56,51 @@ _NUMBERED = re.compile(
 _SQUARE = re.compile(r"(?:^|[-+*/^=(\[ ]|(?<![\w.])\d)\[(?=[^\[\]]{3})")
 _ANY_SQUARE = re.compile(r"\[(?=[^\[\]]{3})")
 _BELOW = re.compile("[₀-₉]")
+_PROMPT = re.compile(
+    r"^[ \t]*(?:(?:In|Out)[ \t]?\[\d+\](?:[ \t]?//[ \t]?\w+)?[ \t]?:?=?|>{2,3}(?=[ \t]))[ \t]*",
+    re.MULTILINE,
+)
+"""Prompts of IPython, Python, MATLAB and Mathematica."""
+_ANSWER = re.compile(r"[ \t]*Out")
+_PRINTED = re.compile(r"^\s*(?:[A-Za-z]+:[ \t]*)?print\s*\([^\n=]*\)[ \t;]*\n(?=\s*\S)")
+"""What prints the formula below."""
+_ROWS = re.compile(
+    r"(\s*[A-Za-z]\w*(?:\([\w, ]*\))?[ \t]*:?=)?\s*"
+    r"(\[[^\n]*\][ \t,;]*(?:\n[ \t]*\[[^\n]*\][ \t,;]*)+)\s*"
+)
 _MOST = 40
 _NEAR = 30
 """Letters in front of a number that say whether it is an index."""
+
+
+def without_prompts(text: str) -> str:
+    """What a shell answers, without its prompts and what it was asked: ``Out[7]: ...``.
+
+    What a prompt's line gives a name stays, and so does the last line.
+    """
+    if not _PROMPT.search(text) and not _PRINTED.match(text):
+        return text
+    lines = [line for line in _PRINTED.sub("", text).split("\n") if line.strip()]
+    kept = []
+    for k, line in enumerate(lines):
+        plain = _PROMPT.sub("", line)
+        asked = (
+            plain != line
+            and not _ANSWER.match(line)
+            and "=" not in [sign for _k, sign in outside(plain)]
+        )
+        if not asked or k == len(lines) - 1:
+            kept.append(plain)
+    return "\n".join(kept)
+
+
+def _rows_together(text: str) -> str:
+    """Rows in brackets, each in a line of its own, as one matrix."""
+    found = _ROWS.fullmatch(text)
+    rows = [row.strip(" \t,;") for row in found[2].split("\n") if row.strip()] if found else []
+    if found is None or any(closes(row) != len(row) - 1 for row in rows):
+        return text
+    return f"{found[1] or ''}[{', '.join(rows)}]"
 
 
 def without_code(text: str, alone: bool) -> str:
@@ -89,7 +131,7 @@ def without_code(text: str, alone: bool) -> str:
         text = _OWNER.sub("", text)
     text = _STANDARD.sub("math.", _SINGLE.sub(r"\1", text))
     text = _TWO_SIGNS.sub("=", _GLUED.sub(r"\1 \2", text))
-    text = "\n".join(map(_one_each, text.split("\n")))
+    text = _rows_together("\n".join(map(_one_each, text.split("\n"))))
     text = _without_lists(_in_brackets(text))
     text = _in_parentheses(text) if alone else text
     if alone and not _POINT.search(text) and not _OTHER_COMMA.search(text):

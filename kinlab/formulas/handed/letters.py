@@ -19,6 +19,8 @@ _PLAIN = str.maketrans(
     | {"〖": "(", "〗": ")", "∴": " ", "⇒": " ", "⟹": " "}
 )
 _FRACTION = re.compile("(\\d\\s?)?([⅓⅔¼¾⅕⅖⅗⅘⅙⅚⅛⅜⅝⅞½])")
+_APART = re.compile("(?<=[A-Za-z\u03b1-\u03c9\u03d1\u03d5]) ([\u0307\u0308])")
+"""A dot above a letter with a blank between, as word processors leave it."""
 _BELOW = re.compile(r"<sub>\s*(\w{1,6})\s*</sub>", re.IGNORECASE)
 _ABOVE = re.compile(r"<sup>\s*(\d)\s*</sup>", re.IGNORECASE)
 _BREAK = re.compile(r"<br\s*/?>", re.IGNORECASE)
@@ -38,6 +40,7 @@ def plain_letters(text: str, place: str) -> str:
         return text
     text = _MATHEMATICAL.sub(lambda found: unicodedata.normalize("NFKC", found[0]), text)
     text = text.translate(_UNSEEN).translate(_PLAIN)
+    text = _APART.sub(r"\1", text)
     return _FRACTION.sub(lambda found: _fraction(found, place), text)
 
 

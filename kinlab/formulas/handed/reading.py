@@ -6,9 +6,10 @@ import re
 import unicodedata
 
 from kinlab.formulas.handed.clauses import Holds, without_clauses
-from kinlab.formulas.handed.code import without_code
+from kinlab.formulas.handed.code import without_code, without_prompts
 from kinlab.formulas.handed.columns import of_column
 from kinlab.formulas.handed.constants import without_constant
+from kinlab.formulas.handed.general import for_each_joint
 from kinlab.formulas.handed.letters import plain_letters, siciliano_s_letters, without_marks
 from kinlab.formulas.handed.prose import doubtful
 from kinlab.formulas.handed.rates import MOVING, plain_rates
@@ -18,6 +19,7 @@ from kinlab.formulas.handed.words import (
     without_remark_behind,
     without_words,
 )
+from kinlab.formulas.signs.brackets import closes
 from kinlab.formulas.signs.dressed import undressed
 from kinlab.formulas.signs.macros import written_out
 from kinlab.formulas.signs.remarks import without_numbers
@@ -87,7 +89,9 @@ _STAR_SAID = re.compile(
 )
 """What a star in a symmetric matrix is said to be, behind it."""
 _ABBREVIATED = re.compile(
-    r"\(\s*(?:abbreviations?|abkürzungen|where|with|wobei|mit)\s*:?\s+(?P<inside>[^\n=]{1,40}=[^\n]*)\)\s*\.?\s*$",
+    r"\s(?:\(\s*(?:(?:abbreviations?|abkürzungen|where|with|wobei|mit)\s*:?\s+(?=[^\n=]{1,40}=)"
+    r"|(?=\\?[A-Za-z][A-Za-z]?_?\{?[\w,]{0,5}\}?\s*=))(?P<inside>[^\n]*)\)"
+    r"|\[\s*(?P<squared>\\?[A-Za-z]_?\{?[\w,]{1,5}\}?\s*=[^\n\[\]]*)\])\s*\.?\s*$",
     re.IGNORECASE,
 )
 _DEFINED = re.compile(r"[ \t]{0,9}(?::\s?=|\\coloneqq(?![A-Za-z]))(?!=)\s*")
@@ -126,10 +130,11 @@ def as_formula(
         ExpressionError: what can be read in two ways, or a clause that is not so.
     """
     refuse_nested(text, place)
-    text = _BOLD.sub(r"\1", written_out(text, place))
+    text = _BOLD.sub(r"\1", written_out(without_prompts(text), place))
     text = _GREEK_ANGLE.sub(r"\1(\2)", text) if "\\" not in text else text
     text = _ACCENTED.sub(lambda letter: unicodedata.normalize("NFC", letter[0]), text)
-    text = _ABBREVIATED.sub(_where, _STAR_SAID.sub("", text))
+    text = for_each_joint(_STAR_SAID.sub("", text))
+    text = _ABBREVIATED.sub(_where, text)
     text = _defined(_DOLLARS.sub("$$", text))
     text, numbered = without_numbers(plain_letters(text, place), place)
     text = _GAP.sub(lambda gap: "\n" if "\n" in gap[0] else " ", text)
@@ -185,5 +190,5 @@ def _without_brackets(found: re.Match[str]) -> str:
 
 def _where(found: re.Match[str]) -> str:
     """Definitions in parentheses as those behind ``where``."""
-    inside = found["inside"]
-    return f" where {inside}" if inside.count("(") == inside.count(")") else found[0]
+    inside = found["inside"] or found["squared"]
+    return f" where {inside}" if closes(f"({inside})") == len(inside) + 1 else found[0]

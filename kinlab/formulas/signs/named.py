@@ -195,6 +195,27 @@ def is_craigs_last(left: str, entry: str, last: LastJoint) -> bool:
     return not last.is_tool and _frames(_CRAIGS, left, entry) == {"0", str(last.number)}
 
 
+_IN_ITS_AXES = re.compile(
+    r"(?:\{\s{0,3}\}\s{0,3})?\^\s{0,3}(?:\{\s{0,3}(?P<braced>\w)\s{0,3}\}|(?P<plain>\w))\s{0,3}"
+    r"(?=(?:\\\w{1,12}\s{0,3}\{\s{0,3})?J(?![A-Za-z]))"
+)
+
+
+def without_its_axes(text: str, entry: str, last: LastJoint) -> str:
+    r"""The tool's Jacobian without the frame it is in: ``{}^3J`` of two joints is in the tool's.
+
+    Args:
+        text: as typed.
+        entry: what the formula is asked for; nothing but that Jacobian is looked at.
+        last: of the arm.
+    """
+    own = (str(last.number), str(last.number + 1), "n", "N", "e", "E", "T")
+    found = _IN_ITS_AXES.search(text) if entry.startswith("jacobian_tool") else None
+    if found is None or (found["braced"] or found["plain"]) not in own:
+        return text
+    return _IN_ITS_AXES.sub("", text, count=1)
+
+
 def _frames(written: re.Pattern[str], left: str, entry: str) -> set[str]:
     """The numbers of the frames that a left side has, where the tool's pose is asked for."""
     found = written.match(_FONT.sub("", left.strip("& $"))[:_LONGEST])

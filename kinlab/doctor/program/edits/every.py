@@ -267,6 +267,7 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Progra
     whole = whole and not (isinstance(node, ast.Name) and node.id in scope.measures)
     if isinstance(node, ast.BinOp):
         yield from of_operator(here, observed, index or whole)
+        yield from exchanges.of_terms(here, observed)
         yield from of_links(here, observed) if isinstance(node.op, ast.MatMult) else ()
     elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
         if not is_diagonal(here):

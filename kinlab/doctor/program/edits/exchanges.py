@@ -9,7 +9,7 @@ from typing import Any
 
 from kinlab.doctor.bytecode.syntax import called, copied, names, nodes, text_of
 from kinlab.doctor.program.edits.chains import SUMS, chain, joined, opposite
-from kinlab.doctor.program.edits.scope.forms import Turned
+from kinlab.doctor.program.edits.scope.forms import Turned, summands
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.entries import without_the_first
 from kinlab.doctor.program.observed import Observed, Shape
@@ -23,6 +23,8 @@ _TURNED = 1.02
 """Cost of a rotation in the plane the other way: ``c*x + s*y, -s*x + c*y``."""
 _MOST = 6
 """Names of one statement of which any two may be exchanged."""
+_OF_TERMS, _TERMS = 1.16, 12
+"""Cost of another term of a statement for one, and of how many such at most."""
 
 
 def of_statement(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
@@ -105,6 +107,35 @@ def _poses_exchanged(here: Here, value: ast.expr) -> Iterator[ProgramEdit]:
             both = {one: ast.Name(other, ast.Load()), other: ast.Name(one, ast.Load())}
             new = Renamed(dict[str, ast.expr](both)).of(entry)
             yield here.within(entries, k, new, "names exchanged", _ANGLES)
+
+
+def of_terms(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
+    """Another term of the statement for one in a list: ``l1*c1`` for ``l2*c12`` in a matrix."""
+    statement = next((one for one in reversed(here.above) if isinstance(one, ast.stmt)), None)
+    value = getattr(statement, "value", None)
+    rows = any(isinstance(one, ast.List | ast.Tuple) for one in here.above)
+    if value is None or not rows or not _is_summand(here):
+        return
+    own, shape = text_of(here.node), observed.shape(here.node)
+    terms = (x for row in nodes(value) if isinstance(row, ast.List | ast.Tuple) for x in row.elts)
+    every = (one for entry in terms for one in summands(entry) if isinstance(one, ast.BinOp))
+    others = {text_of(one).removeprefix("-"): one for one in every}
+    for text, other in others.items() if len(others) <= _TERMS else ():
+        if text != own.removeprefix("-") and observed.shape(other) == shape:
+            turned = own.startswith("-") and not text_of(other).startswith("-")
+            new = opposite(other) if turned else other
+            yield here.instead(new, "another term", _OF_TERMS)
+
+
+def _is_summand(here: Here) -> bool:
+    """Whether a product is an entry of a list, or a term of one."""
+    node = here.node
+    if not isinstance(node, ast.BinOp) or isinstance(node.op, ast.Add | ast.Sub):
+        return False
+    outer = here.parent
+    if isinstance(outer, ast.BinOp):
+        return isinstance(outer.op, ast.Add | ast.Sub)
+    return isinstance(outer, ast.List | ast.Tuple)
 
 
 def _with_the_other_sign(node: ast.expr, name: str) -> ast.expr | None:

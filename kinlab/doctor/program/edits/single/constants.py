@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import ast
+import math
 from collections.abc import Iterator
+from fractions import Fraction
 
 from kinlab.doctor.bytecode.syntax import called, nodes
 from kinlab.doctor.program.edits.numbers.data import is_number, measured
@@ -27,6 +29,8 @@ _ROOTS, _OF_A_ROOT = (2, 3, 5), 1.1
 """Numbers that may be lost roots, and cost of one."""
 _OF_A_BRANCH, _KEYS = 1.1, 2
 """Cost of something for nothing in a branch, and indices of the other one that are looked at."""
+_QUARTER, _IN_DEGREES = 15, 1.1
+"""Angles in degrees are typed in multiples of it, and cost of such a one in radians."""
 _ANGLE_FOR_ONE = 1.05
 """Cost of the angle for a 1 in front of its sine: ``th - sin(th)``."""
 
@@ -53,6 +57,17 @@ def _as_in_the_other_branch(here: Here, scope: Scope) -> Iterator[ast.expr]:
     for key in [x for x in keys if isinstance(x, ast.Constant)][:_KEYS]:
         for _text, node in scope.simple((3,)):
             yield ast.Subscript(node, key, ast.Load())
+
+
+def _in_radians(degrees: int, scope: Scope) -> ast.expr:
+    """An angle as one types it: ``np.pi/2``, ``2*np.pi/3``."""
+    share = Fraction(degrees, 180)
+    above = number(math.pi) if not scope.has_numpy else PI
+    if share.numerator != 1:
+        above = ast.BinOp(number(share.numerator), ast.Mult(), above)
+    return (
+        above if share.denominator == 1 else ast.BinOp(above, ast.Div(), number(share.denominator))
+    )
 
 
 def of_rods(here: Here) -> Iterator[ProgramEdit]:
@@ -123,6 +138,8 @@ def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
     if value in _ROOTS and scope.has_numpy and isinstance(here.parent, ast.BinOp):
         root = ast.Attribute(ast.Name("np", ast.Load()), "sqrt", ast.Load())
         yield here.instead(ast.Call(root, [number(value)], []), "power", _OF_A_ROOT)
+    if abs(value) >= 2 * _QUARTER and value % _QUARTER == 0 and not value % 1:
+        yield here.instead(_in_radians(int(value), scope), "degrees", _IN_DEGREES)
     for factor in (2, 0.5, 3, 1 / 3, 4, 0.25):
         new = value * factor
         new = int(new) if new == int(new) else new

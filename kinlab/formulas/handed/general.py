@@ -1,0 +1,91 @@
+r"""What is explained for every joint at once: ``c_i = \cos\theta_i`` as ``c_1 = \cos\theta_1``.
+
+``x = l1*c1 + l2*c12 (ci = cos qi, cij = cos(qi + qj))`` explains c1 and c12; nothing is taken for
+granted of such a definition, so that ``c_i = \sin\theta_i`` is not what everybody calls so.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import partial
+
+_LETTERS = "ijk"
+_GENERAL = re.compile(
+    r"(?<![\w\\}])(?:(?P<name>\\?[A-Za-z]{1,6})_\s?"
+    r"(?:\{\s?(?P<c>[cC]?)\s?(?P<braced>[ijk]{1,3})\s?\}|(?P<below>[ijk]{1,3}))"
+    r"|(?P<short>[csCSlmI]|lc)(?P<glued>[ijk]{1,3}))"
+    r"\s*(?::\s?=|=|≡|\\equiv(?![A-Za-z]))\s*(?=\S)"
+)
+"""A name with letters below, and the sign of equality behind it."""
+_END = re.compile(r"[,;\n$]|\s(?:and|und|et|y|e)\s|和|\.(?=\s|$)|\\q?quad|\\\\")
+_SUBSCRIPT = (
+    r"(?:(?<=[A-Za-zθ])_\s?\{{?\s?(?P<below>[c]?){0}\s?\}}?(?![A-Za-z])"
+    r"|(?<![A-Za-z\\])(?P<head>[A-Za-zθ]|lc){0}(?![A-Za-z]))"
+)
+_FOR_ALL = re.compile(
+    r"\s*(?:\bfor\s+)?\(?\s*(?<![\w*/^+-])[ijk]\s*=\s*1\s*,\s*(?:2|\\l?dots|\.{2,3}|…)"
+    r"(?:[\s,.\dn…]|\\l?dots){0,12}\)?"
+)
+"""Which joints there are: ``i = 1, ..., n``."""
+
+
+def for_each_joint(text: str) -> str:
+    """The text with each general definition as those of the names that stand in it.
+
+    Args:
+        text: as typed.
+    """
+    if not any(letter in text for letter in _LETTERS) or "=" not in text:
+        return text
+    found, at = list[tuple[int, int, re.Match[str]]](), 0
+    while one := _GENERAL.search(text, at):
+        end = at = _end_of(text, one.end())
+        letters = one["braced"] or one["below"] or one["glued"]
+        if all(_of(letter).search(text[one.end() : end]) for letter in letters):
+            found.append((one.start(), end, one))
+    rest = text
+    for start, end, _one in reversed(found):
+        rest = rest[:start] + rest[end:]
+    for start, end, one in reversed(found):
+        made = _instances(one, text[one.end() : end], rest)
+        text = f"{text[:start]}{', '.join(made)}{text[end:]}" if made else text
+    return _FOR_ALL.sub("", text) if found else text
+
+
+def _end_of(text: str, start: int) -> int:
+    """Where a formula ends that begins at a place: at a comma or a word outside of brackets."""
+    depth = 0
+    for k in range(start, len(text)):
+        depth += (text[k] in "([{") - (text[k] in ")]}")
+        if depth < 0 or (depth == 0 and _END.match(text, k)):
+            return k
+    return len(text)
+
+
+def _of(letter: str) -> re.Pattern[str]:
+    return re.compile(_SUBSCRIPT.format(letter))
+
+
+def _instances(general: re.Match[str], right: str, text: str) -> list[str]:
+    """The definitions of the names that stand in a text."""
+    letters = general["braced"] or general["below"] or general["glued"]
+    head = general["name"] or general["short"]
+    below = general["c"] or ""
+    pattern = (
+        rf"(?<![A-Za-z\\]){re.escape(head)}_?\s?\{{?\s?{below}\s?([1-9]{{{len(letters)}}})(?!\d)"
+    )
+    made = []
+    for digits in dict.fromkeys(re.findall(pattern, text)):
+        own = right
+        for letter, digit in zip(letters, digits, strict=True):
+            own = _of(letter).sub(partial(_indexed, digit=digit), own)
+        braced = f"_{{{below}{digits}}}" if general["braced"] else f"_{digits}"
+        name = f"{head}{digits if general['glued'] else braced}"
+        made.append(f"{name} = {own.strip()}")
+    return made
+
+
+def _indexed(found: re.Match[str], digit: str) -> str:
+    if found["head"]:
+        return f"{found['head']}{digit}"
+    return f"_{{{found['below']}{digit}}}" if found["below"] else f"_{digit}"
