@@ -119,11 +119,15 @@ def examine_formulas(
         samples, seed: the states, as in :func:`kinlab.diagnose`.
 
     Raises:
-        ExpressionError: a name that means nothing.
+        ExpressionError: a name that means nothing, or a part of a chain of equalities that is none
+            where the last one is not right.
     """
     file = as_judged(file, robot)
-    parts, unknown = [_examined(file, robot, samples, seed)], ""
+    parts = [_examined(file, robot, samples, seed)]
+    unknown = file.broken.removeprefix(f"{file.path}: ")
     right = all(one.agrees for one in parts[0])
+    if unknown and not right:
+        raise ExpressionError(file.broken)
     for other in file.others:
         try:
             part = _examined(other, robot, samples, seed)

@@ -70,6 +70,7 @@ class FormulaFile:
         symbol_texts: the same for symbols; a number as its digits.
         symbols_typed: symbols as they were typed, where that is a text.
         others: the file with another part of a chain of equalities for an entry's formula.
+        broken: what a part of a chain of equalities could not be read for; empty where all were.
         remarks: what is to be said of how an entry was read.
         unread: words beside an entry's formula that may change what it claims.
         parts: rows, columns and blocks of a quantity that were given, with their entries.
@@ -86,6 +87,7 @@ class FormulaFile:
     writing: typed.Hand
     numbers: Mapping[str, str] = field(default_factory=dict)
     others: tuple[FormulaFile, ...] = ()
+    broken: str = ""
     remarks: Mapping[str, str] = field(default_factory=dict)
     unread: Mapping[str, Doubt] = field(default_factory=dict)
     symbols_typed: Mapping[str, str] = field(default_factory=dict)
@@ -205,9 +207,13 @@ def formula_file(
     chains = {key: typed.readings(value, key) for key, value in entries.items()}
     entries = {key: parts[0] for key, parts in chains.items()}
     read = partial(_read, place, robot, symbols, writing, whole)
-    others = (read({**entries, key: part}) for key, parts in chains.items() for part in parts[1:])
+    file, others, broken = read(entries), list[FormulaFile](), ""
+    for key, part in ((key, part) for key, parts in chains.items() for part in parts[1:]):
+        try:
+            others.append(read({**entries, key: part}))
+        except ExpressionError as problem:  # Im(l1*e^(i*q1) + ...) = ...
+            broken = broken or str(problem)
     remarks = {key: remark for key, remark in remarks.items() if remark}
-    file = read(entries)
     names = {*file.symbols, *explained}.union(
         *map(tree.names, [*file.formulas.values(), *file.symbols.values()])
     )
@@ -220,7 +226,8 @@ def formula_file(
             remarks |= dict.fromkeys(apart, remarks[key]) if key in remarks else {}
     left = {key: left_over(*doubts[key], names) for key in doubts.keys() & file.formulas.keys()}
     unread = {key: words for key, words in left.items() if words}
-    return replace(file, others=tuple(others), remarks=remarks, unread=unread, matrices=matrices)
+    file = replace(file, others=tuple(others), broken=broken)
+    return replace(file, remarks=remarks, unread=unread, matrices=matrices)
 
 
 _STATIC = re.compile(r"(?:tau|u|Q)g?(\d?)")

@@ -7,6 +7,7 @@ granted of such a definition, so that ``c_i = \sin\theta_i`` is not what everybo
 from __future__ import annotations
 
 import re
+import unicodedata
 from functools import partial
 
 _LETTERS = "ijk"
@@ -29,12 +30,42 @@ _FOR_ALL = re.compile(
 """Which joints there are: ``i = 1, ..., n``."""
 
 
+_POSITIONS = r"(?:\\(?:mathbf|boldsymbol|bm|vec)\s?\{?\s?)?\\?(?:theta|q|θ)\s?\}?"
+_RATES = re.compile(
+    r"(?<![\w\\}])(?P<name>[A-Za-zα-ω]|\\[a-z]{2,6})\s?=\s?(?:"
+    rf"(?P<once>d{_POSITIONS}/dt|\\dot\s?\{{?\s?{_POSITIONS}\s?\}}?|[qθ]\u0307|(?:qd|dq)(?!\w))"
+    rf"|(?:d(?:\^\{{?2\}}?|²){_POSITIONS}/dt(?:\^\{{?2\}}?|²)|\\ddot\s?\{{?\s?{_POSITIONS}\s?\}}?|[qθ]\u0308"
+    r"|(?:qdd|ddq)(?!\w)))(?![\w_₁-₉])"
+)
+"""A vector that is that of all rates: ``v = dq/dt``, ``\\alpha = \\ddot\\theta``."""
+
+
+def _with_rates(text: str) -> str:
+    """The text with the rates of joints in place of the vector that they are."""
+    typeset = "\\" in text
+
+    def each(found: re.Match[str]) -> str:
+        name = (
+            rf"(?<![A-Za-z\\]){re.escape(found['name'])}_?(?:\{{\s?([1-9])\s?\}}|([1-9₁-₉]))(?!\d)"
+        )
+        made = []
+        for one in {x[0]: x for x in re.finditer(name, text)}.values():
+            digit = unicodedata.normalize("NFKC", one[1] or one[2])
+            dots = "d" if found["once"] else "dd"
+            rate = rf"\{dots}ot{{q}}_{{{digit}}}" if typeset else f"q{dots}{digit}"
+            made.append(f"{one[0]} = {rate}")
+        return ", ".join(made) or found[0]
+
+    return _RATES.sub(each, text)
+
+
 def for_each_joint(text: str) -> str:
     """The text with each general definition as those of the names that stand in it.
 
     Args:
         text: as typed.
     """
+    text = _with_rates(text)
     if not any(letter in text for letter in _LETTERS) or "=" not in text:
         return text
     found, at = list[tuple[int, int, re.Match[str]]](), 0

@@ -13,7 +13,7 @@ from kinlab.formulas.handed.general import for_each_joint
 from kinlab.formulas.handed.letters import plain_letters, siciliano_s_letters, without_marks
 from kinlab.formulas.handed.prose import doubtful
 from kinlab.formulas.handed.rates import MOVING, plain_rates
-from kinlab.formulas.handed.units import without_units
+from kinlab.formulas.handed.units import with_units_inside, without_units
 from kinlab.formulas.handed.words import (
     refuse_comments,
     without_remark_behind,
@@ -106,6 +106,14 @@ _GREEK_ANGLE = re.compile(r"(?<![A-Za-z])(sin|cos|tan)([θϑφϕ](?:[₁-₉]|[1
 """A function with its angle, and nothing between: ``cosθ2``."""
 _MAPLES = re.compile(r":(?=\s*(?:$|\n|[A-Za-z]\w{0,20}(?:\[[\d,\s]{1,5}\])?\s*:=))")
 """A colon that ends a statement of Maple's."""
+_NAMED = r"\$?\\?[A-Za-zα-ωΑ-Ω]{1,6}_?\{?[\w,]{0,5}\}?\s{0,3}:?=(?!=)"
+_WHERE = re.compile(
+    rf"(?<!\w)(?:avec|con|com|donde|dove|où|onde|где)(?=\s+{_NAMED})", re.IGNORECASE
+)
+_AND = re.compile(rf"(?<=\s)(?:et|y|e|и)\s+(?={_NAMED})")
+"""What stands between a formula and what is explained behind it, and between two such."""
+_FOLLOWS = re.compile(r"\s*(?:(?<![<=>])=>|⇒|⟹)\s*")
+"""What follows from what stands before is an equation of its own."""
 _ON_A_LINE = re.compile(r"\n\s*(?=(?:with|mit)\s)")
 
 
@@ -133,7 +141,8 @@ def as_formula(
     text = _BOLD.sub(r"\1", written_out(without_prompts(text), place))
     text = _GREEK_ANGLE.sub(r"\1(\2)", text) if "\\" not in text else text
     text = _ACCENTED.sub(lambda letter: unicodedata.normalize("NFC", letter[0]), text)
-    text = for_each_joint(_STAR_SAID.sub("", text))
+    text = _FOLLOWS.sub("\n", text)
+    text = for_each_joint(_in_english(with_units_inside(_STAR_SAID.sub("", text))))
     text = _ABBREVIATED.sub(_where, text)
     text = _defined(_DOLLARS.sub("$$", text))
     text, numbered = without_numbers(plain_letters(text, place), place)
@@ -175,6 +184,12 @@ def _defined(text: str) -> str:
     if ":=" not in text:
         return _DEFINED.sub(" = ", text)
     return _DEFINED.sub(" = ", _MAPLES.sub(";", _OF_MAPLE.sub(r"\1\2\3", text)))
+
+
+def _in_english(text: str) -> str:
+    """What explains names in another language: ``donde P1 = ... y P2 = ...``."""
+    found = _WHERE.search(text)
+    return _AND.sub("and ", _WHERE.sub("where", text)) if found else text
 
 
 def _of_gravity(found: re.Match[str]) -> str:

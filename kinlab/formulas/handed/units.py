@@ -12,6 +12,17 @@ from decimal import Decimal
 from kinlab.formulas.signs.refusals import refused
 from kinlab.host.language import N_
 
+_BEHIND_MATHS = re.compile(
+    r"(?<=\d)\s?\$(?:\s|~|\\[,;: ]){0,3}"
+    r"((?:mm|cm|kg|rad|Nm|N|m|s)(?:\s?[·*/]?\s?(?:m|s))?(?:\^\{?-?\d\}?|[²³])?)(?=[\s,.;)]|$)"
+)
+
+
+def with_units_inside(text: str) -> str:
+    """Units behind a number's dollars within these: ``$l_1 = 0.5$ m``."""
+    return _BEHIND_MATHS.sub(r"\\,\\text{ \1}$", text)
+
+
 Size = tuple[int, int, int]
 """Powers of metre, kilogram and second."""
 _SIZES = {

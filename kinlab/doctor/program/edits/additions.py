@@ -63,6 +63,8 @@ _TYPED = 0.14
 """What it costs more to transpose numbers that are typed: they would be typed so."""
 _AS_GIVEN = 0.02
 """What it is likelier of what a line only takes over: ``n = wrench[3:]``."""
+_WITHIN = 1.16
+"""Cost of a minus in front of a sum that is a factor."""
 _GIVEN_ON = 1.12
 """Cost of a sign of what a function only gives on, or an object only keeps."""
 _KEPT = 1.22
@@ -137,6 +139,8 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         alone = isinstance(node, ast.Name | ast.Subscript | ast.Attribute) and given
         cost = 1.06 if alone else 1.0 if first or entry else 1.03 if whole else 1.1
         given_on = here.part and isinstance(outer, ast.Return) and isinstance(node, ast.Name)
+        if first and isinstance(op, ast.Add) and _is_a_factor(here):
+            cost = _WITHIN
         if alone and (_keeps(parent, node) or given_on):
             cost = _GIVEN_ON
         if alone and _is_unpacked(here):
@@ -211,6 +215,12 @@ def _in_the_other_case(here: Here) -> Iterator[ast.expr]:
         for term in summands(other):
             if isinstance(term, ENTRIES):
                 yield term
+
+
+def _is_a_factor(here: Here) -> bool:
+    """Whether the sum that begins with it is multiplied: ``l*(a + b)``, where no sign is lost."""
+    outer = here.above[-2] if len(here.above) > 1 else None
+    return isinstance(outer, ast.BinOp) and isinstance(outer.op, ast.Mult)
 
 
 def _is_alone(row: ast.AST, node: ast.expr) -> bool:

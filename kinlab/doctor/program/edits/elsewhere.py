@@ -481,8 +481,8 @@ def _only_difference(one: ast.AST, other: ast.AST) -> tuple[ast.expr, ast.expr] 
                 return None
             pairs = [*zip(mine, theirs, strict=True)]
         for a, b in pairs:
-            if not isinstance(a, ast.AST):
-                if a != b:
+            if not isinstance(a, ast.AST) or not isinstance(b, ast.AST):
+                if a != b:  # x[:j] beside x[j:] has a limit where that has none
                     return None
             elif ast.dump(a) != ast.dump(b):
                 if not isinstance(a, ast.expr) or not isinstance(b, ast.expr):

@@ -144,6 +144,9 @@ def _mirroring(asked: Asked, observed: Observed) -> Callable[[ProgramEdit], bool
     def mirrors(edit: ProgramEdit) -> bool:
         if edit.kind != "sign":
             return False
+        if edit.part != DATA and (row := _row_that_is_set(edit, observed)) is not None:
+            positive = not any(is_own(robot, -x) for x in row) or _is_distance(edit)
+            return positive and all(is_own(robot, x) for x in row)
         if edit.part == DATA and edit.numbers and not edit.place:
             old: Any = edit.numbers[0]
         elif isinstance(edit.node, ast.Constant) and id(edit.changes[0].holder) in named:
@@ -166,6 +169,19 @@ def _is_entry(edit: ProgramEdit) -> bool:
     """Whether it is of an entry of a row: of a point, or an axis, that has signs of its own."""
     holder = edit.changes[0].holder
     return isinstance(holder, list) and isinstance(edit.node, ast.Name | ast.Attribute)
+
+
+def _row_that_is_set(edit: ProgramEdit, observed: Observed) -> list[float] | None:
+    """The numbers of a row to which a name is set, which no state changes: ``lc = l/2``."""
+    holder, seen = edit.changes[0].holder, observed.of(edit.node)
+    if not isinstance(holder, ast.Assign) or holder.value is not edit.node or seen is None:
+        return None
+    if seen.shape is None or len(seen.shape) != 1 or not seen.values:
+        return None
+    first, *others = seen.values
+    if not (first > 0).all() or any(not np.array_equal(first, one) for one in others):
+        return None
+    return [*map(float, first)]
 
 
 def _is_named_share(edit: ProgramEdit, named: set[int]) -> bool:

@@ -44,8 +44,6 @@ _ALONE = 50_000_000
 """What may be done for single edits beside which none stands."""
 _FURTHER = 6000
 """Edits that are run all at once where there is no time to run each."""
-_QUICK = 1300
-"""Edits that have been run alone by then, of programs of which lanes are worth the time."""
 _MORE_WORK, _WOVEN = 70_000_000, 5000
 """Work that may be done for them; what putting one in amounts to."""
 _HEAVY, _FIRST, _HEAVY_WORK = 100_000, 150, 200_000_000
@@ -241,8 +239,6 @@ class LineSearch:
                 if found and self.likely(edit) > farthest:
                     continue
                 self.work.done += self.work.of(edit)
-                if self.work.done > limit and self.thorough and not found and turn <= _QUICK:
-                    limit = _ALONE + _MORE_WORK  # lanes would take as long
                 if self.work.done > limit or (self.heavy and turn == _FIRST and not found):
                     found = found or self._in_lanes(tried[turn:][:_FURTHER])
                     break

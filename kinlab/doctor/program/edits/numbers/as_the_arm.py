@@ -263,8 +263,10 @@ def as_it_is(trial: Trial, observed: Observed, robot: Any) -> Callable[[ProgramE
             same |= {id(inner) for inner in nodes(node)}
 
     def sure(edit: ProgramEdit) -> bool:
-        if edit.part == DATA:  # a column may be the arm's in degrees, and nobody turns them
-            return edit.kind != "degrees" and _column(edit.node, edit.place)[0] in same
+        if edit.part == DATA and edit.kind == "degrees" and edit.numbers is not None:
+            return False  # a column of one angle may be the arm's in degrees, and nobody turns it
+        if edit.part == DATA:
+            return _column(edit.node, edit.place)[0] in same
         return edit.kind in ("sign", "number") and id(edit.node) in same
 
     return sure
