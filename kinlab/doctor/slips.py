@@ -22,6 +22,7 @@ from kinlab.doctor.entries.terms import Slip
 from kinlab.doctor.linkages.looked_up import Reference, reference_of
 from kinlab.doctor.text.habits import as_text
 from kinlab.doctor.text.line import Line
+from kinlab.doctor.text.meanings import Meanings
 from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import numbers_at
 from kinlab.errors import KinlabError
@@ -45,6 +46,8 @@ _FLOOD = 8
 """Slips in all entries together above which a list of them is no diagnosis."""
 _TIED = 5
 """Slips of one entry that are kept as alternatives."""
+_TURNS, _SHARE = 6, 0.01
+"""Steps in which a number is found, and the share by which it is moved for its slope."""
 _LOST, _MISSING = "missing factor", "missing term"
 _RATE = re.compile(r"qd{1,2}\d+")
 _FUNCTIONS = {"sin", "cos", "tan"}
@@ -59,6 +62,10 @@ def slips_in(
     """Causes that are slips of the pen in the entries that are off, or what is known of some."""
     defined: list[Slip] = []
     every = off
+    if (mistyped := _mistyped(case, off, written)) is not None:
+        defined.append(mistyped)
+        written = _defined_otherwise(case, written, mistyped)
+        off = _still_off(case, every, written)
     some = [*_definitions(case, every, off, written)]
     while len(defined) < LIST and (one := _defined(case, every, off, some, written)) is not None:
         defined.append(one)
@@ -86,6 +93,79 @@ def slips_in(
         return [], tuple(found[0].sentence for found in per_entry)
     sets = product(*per_entry) if len(per_entry) == 1 else [tuple(f[0] for f in per_entry)]
     return [slip_cause(chosen) for chosen in sets], ()
+
+
+def _mistyped(case: Case, off: list[AnswerEntry], written: dict[str, Written]) -> Slip | None:
+    """A number of the writer's that none of the arm's is, with one of which more is right.
+
+    ``b = 0.6`` beside l1 = 0.5; of an arm's numbers and what is made of them.
+    """
+    if any(entry.label not in written for entry in off):
+        return None
+    texts = [written[entry.label] for entry in off]
+    given = {x: meant for text in texts for x, meant in text.symbols.items() if x not in text.known}
+    typed = {name: value for name, meant in given.items() if (value := _as_number(meant))}
+    here = _numbers_here(case) if typed else {}
+    known = Meanings.at(here) if typed else None
+    found: list[tuple[int, str, float]] = []
+    for name, value in typed.items():
+        assert known is not None
+        if known.parameter(abs(value)) is not None:
+            continue  # a number of the arm's, though it may be another that is meant
+        solved = (_solved(one, written[one.label], name, value, here) for one in off[:_PATIENCE])
+        for number in dict.fromkeys(solved):
+            own = known.parameter(abs(number)) is not None
+            several = len(off) > 1 or not known.product(abs(value))
+            made_of = known.product(abs(number)) and several
+            if number * value > 0 and (own or made_of):
+                left = len(_still_off(case, off, _with_number(written, name, number)))
+                found += [(left, name, number)] if left < len(off) else []
+    least = min(found, default=(0, "", 0.0))
+    if not found or [left for left, *_rest in found].count(least[0]) > 1:
+        return None
+    left, name, number = least
+    told = _("{old} should be {new}").format(old=given[name], new=f"{number:.10g}")
+    said = _("{entry}: {slip} ({kind})").format(entry=name, slip=told, kind=_("number"))
+    values = _with_number(written, name, number)[off[0].label].values(here)
+    error = off[0].error(values, off[0].engine) if not left else 0.0
+    slip = Slip(name, ("number",), said, f"{number:.10g}", 1.0, values, True, error=error)
+    return replace(slip, defined=(name, f"{number:.10g}"))
+
+
+def _solved(
+    entry: AnswerEntry, text: Written, name: str, value: float, here: dict[str, Array]
+) -> float:
+    """The number with which a text is right at the state at which it does most; 0 of none."""
+    number = value
+    for _turn in range(_TURNS):
+        at = [
+            _with_number({"": text}, name, x)[""].values(here)
+            for x in (number, number * (1 + _SHARE))
+        ]
+        slope = (at[1] - at[0]) / (number * _SHARE)
+        k = int(np.argmax(np.abs(slope)))
+        if not np.isfinite(slope[k]) or not slope[k]:
+            return 0.0
+        number += float((entry.engine[k] - at[0][k]) / slope[k])
+        if not number or not np.isfinite(number):
+            return 0.0
+    return float(f"{number:.10g}")
+
+
+def _with_number(written: dict[str, Written], name: str, number: float) -> dict[str, Written]:
+    """The texts with another number for one of the writer's names."""
+    return {
+        label: replace(text, symbols={**text.symbols, name: repr(number)})
+        for label, text in written.items()
+    }
+
+
+def _as_number(text: str) -> float:
+    """The number that a text is; 0 of what is none."""
+    try:
+        return float(text)
+    except ValueError:
+        return 0.0
 
 
 def _per_entry(

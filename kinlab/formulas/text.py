@@ -7,6 +7,7 @@ import math
 import re
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
+from itertools import pairwise
 
 from kinlab.formulas import tree
 from kinlab.formulas.arithmetic import Meaning, is_arithmetic, read
@@ -23,6 +24,8 @@ _DIGITS = 40
 _EXPONENT = 6
 
 SHORTHAND = re.compile(r"([cs])_?([1-9]+)")
+_SYMBOL = 3
+"""Digits of a Christoffel symbol."""
 """c12 is cos(q1 + q2), s1 is sin(q1), as in every textbook."""
 
 _DOTTED = r"dtheta|thetad|dth|thd|qd|dq|theta_?dot_?|q_?dot_?|th_?dot_?"
@@ -112,10 +115,15 @@ def canonical(name: str) -> Node:
     if found:
         return tree.sym(f"q{found.group(2)}{found.group(1)}")
     found = SHORTHAND.fullmatch(name)
-    if found:
+    if found and _is_a_sum(found.group(2)):
         angle = tree.add(*(tree.sym(f"q{digit}") for digit in found.group(2)))
         return tree.call("cos" if found.group(1) == "c" else "sin", angle)
     return tree.sym(name.replace("_", "") if _UNDERSCORED.fullmatch(name) else name)
+
+
+def _is_a_sum(digits: str) -> bool:
+    """Whether the angles of joints are added: not those of c211, which is Christoffel's symbol."""
+    return len(digits) < _SYMBOL or all(a < b for a, b in pairwise(digits))
 
 
 def joint_spelling(words: Iterable[str], joints: int) -> dict[str, str]:

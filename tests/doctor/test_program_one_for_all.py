@@ -285,7 +285,49 @@ def f(q):
         T = T @ turned(*row)
     return T
 """
+ABSOLUTE_MASSES = """
+import numpy as np
+
+def f(q):
+    m, l = np.array([3.0, 2.0, 1.0]), np.array([0.5, 0.4, 0.25])
+    c = l/2
+    K = np.diag(m*l**2/12 + m*c**2)
+    for i in range(3):
+        K[i, i] += l[i]**2*m[i + 1:].sum()
+        for j in range(i + 1, 3):
+            K[i, j] = K[j, i] = l[i]*(m[j]*c[j] + l[j]*m[j + 1:].sum())
+    th = np.cumsum(q)
+    B = np.tril(np.ones((3, 3)))
+    return B.T @ (K*np.cos(th[:, None] - th)) @ B
+"""
+SUMS = """
+import numpy as np
+LENGTHS = np.array([0.5, 0.4, 0.25])
+
+def f(q):
+    th = np.cumsum(q)
+    up, on = LENGTHS*np.cos(th), -LENGTHS*np.sin(th)
+    J = np.ones((3, 3))
+    for k in range(3):
+        J[0, k] = on[k:].sum()
+        J[1, k] = up[k:].sum()
+    return J
+"""
+TWISTS = """
+import numpy as np
+ROWS = [(0.0, 0.0), (0.0, 0.45), (np.pi/2, 0.35)]
+
+def f(q):
+    T = np.eye(4)
+    for (al, a), th in zip(ROWS, q):
+        c, s, ca, sa = np.cos(th), np.sin(th), np.cos(al), np.sin(al)
+        T = T @ np.array([[c, -s, 0, a], [s*ca, c*ca, -sa, 0], [s*sa, c*sa, ca, 0], [0, 0, 0, 1.0]])
+    T[:3, 3] += 0.3*T[:3, 0]
+    return T
+"""
 _CASES = [
+    (ABSOLUTE_MASSES, "planar3r", "mass_matrix", [("l[j]*m[j + 1:]", "l[j]*m[j:]")]),
+    (SUMS, "planar3r", "planar_jacobian", [("on[k:]", "on[:k + 1]"), ("= up[k:]", "= on[k:]")]),
     (ROWS, "planar3r", "planar_jacobian", [(" -r2*sin(b) - r3*sin(c), -r3", " -r1*sin(a) - r3*sin(c), -r3")]),
     (ROWS, "planar3r", "planar_jacobian", [(" r2*cos(b) + r3*cos(c), r3", " r2*cos(b) + r1*cos(a), r3")]),
     (TABLE, "stanford", "fk", [("(q[3], -np.pi/2", "(q[3], -90")]),
@@ -367,3 +409,9 @@ def test_whole_masses_with_names_are_the_arm_s(tmp_path) -> None:
     slip = ("(m2 + m3)*l1**2", "m2*l1**2")
     told = _told(WHOLE, "planar3r", "mass_matrix", slip, tmp_path / "hand.py")
     assert "m3" in told.split("should be")[1]  # m1 is 3, too
+
+
+def test_a_twist_in_degrees_that_nobody_turns_is_told(tmp_path) -> None:
+    slip = ("(np.pi/2, 0.35)", "(90, 0.35)")
+    told = _told(TWISTS, "spatial3r", "fk", slip, tmp_path / "hand.py")
+    assert "ROWS[2][0], degrees are taken for radians: 90 should be 1.5708" in told

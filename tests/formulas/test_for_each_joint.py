@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import kinlab as kl
-from kinlab.errors import ExpressionError
+from kinlab.errors import ExpressionError, KinlabError
 from kinlab.formulas.handed.code import without_prompts
-from kinlab.formulas.handed.general import for_each_joint
+from kinlab.formulas.signs.general import for_each_joint
 
 _X = "x = l1*c1 + l2*c12 + l3*c123"
 
@@ -134,3 +134,87 @@ def test_many_definitions_do_not_keep_the_doctor() -> None:
     found = kl.diagnose("planar2r", "gravity_torques[0]", text, samples=10)
     assert "- m2*l2*g*cos(a39) should be + m2*l2*g*cos(a39)" in str(found)
     assert np.isfinite(found.error_before)
+
+
+@pytest.mark.parametrize("sign", ["#", "%", "//"])
+@pytest.mark.parametrize(("minus", "right"), [("+", True), ("-", False)])
+def test_what_a_comment_gives_a_name_counts(sign: str, minus: str, right: bool) -> None:
+    """``# c12 = cos(q1 - q2)`` had agreed: what stands in comments was left out."""
+    behind = f"x = l1*c1 + l2*c12;   {sign} c12 = cos(q1{minus}q2)"
+    before = f"{sign} c1 = cos(q1), c12 = cos(q1{minus}q2) etc.\nx = l1*c1 + l2*c12;"
+    for text in (behind, before):
+        assert _agrees("planar2r", "fk[0,3]", text) is right
+
+
+@pytest.mark.parametrize("sign", ["#", "%"])
+def test_another_equation_in_a_comment_says_nothing(sign: str) -> None:
+    assert _agrees("planar2r", "fk[0,3]", f"x = l1*c1 + l2*c12 {sign} T = T1*T2")
+
+
+def test_christoffel_s_symbols_are_no_cosines() -> None:
+    text = "c21 = c211*qd1 + c221*qd2 = m2*l1*lc2*sin(q2)*qd1"
+    assert _agrees("planar2r_rods", "coriolis_matrix[1,0]", text)
+    with pytest.raises(KinlabError, match="c211"):
+        _agrees("planar2r_rods", "coriolis_matrix[1,0]", text.rpartition(" = ")[0])
+
+
+def test_a_part_of_a_chain_that_is_no_arithmetic() -> None:
+    text = "y = Im(l1*e^(i*q1) + l2*e^(i*(q1+q2))) = l1*sin(q1) + l2*sin(q1+q2)"
+    found = kl.diagnose("planar2r", "fk[1,3]", text, samples=10)
+    assert found.agrees
+    assert "was not judged" in str(found)
+    with pytest.raises(KinlabError, match="not a number"):
+        _agrees("planar2r", "fk[1,3]", text.replace("sin(q1)", "cos(q1)"))
+
+
+@pytest.mark.parametrize(
+    ("behind", "right"),
+    [
+        (r"$x=u c_1+w c_{12}$, with $u=0.5$ m, $w=0.4$ m.", True),
+        (r"$x=u c_1+w c_{12}$, avec $u=0.5$ et $w=0.4$", True),
+        (r"$x=u c_1+w c_{12}$, con $u=500$ mm y $w=400$ mm", True),
+        (r"$x=u c_1+w c_{12}$, with $u=0.5$ m, $w=0.3$ m.", False),
+        ("x = A + B, donde A = l1*cos(q1) y B = l2*cos(q1+q2)", True),
+        ("x = A + B, donde A = l1*cos(q1) y B = l2*cos(q2)", False),
+        ("x = A + B, где A = l1*cos(q1) и B = l2*cos(q1+q2)", True),
+        ("Координата схвата: x = l1*cos(q1) + l2*cos(q1+q2)", True),
+    ],
+)
+def test_explained_in_other_languages(behind: str, right: bool) -> None:
+    assert _agrees("planar2r", "fk[0,3]", behind) is right
+
+
+@pytest.mark.parametrize(
+    "behind",
+    [
+        "но это неверно",
+        "углы от вертикали",
+        "which I computed for an arm whose second joint is prismatic",
+        "gravity acts along +y in my drawing",
+        "a rough estimate",
+    ],
+)
+def test_what_denies_it_is_refused(behind: str) -> None:
+    with pytest.raises(ExpressionError, match="beside the formula"):
+        _agrees("planar2r", "fk[0,3]", f"x = l1*cos(q1) + l2*cos(q1+q2), {behind}")
+
+
+@pytest.mark.parametrize(
+    ("quantity", "left", "right"),
+    [("kinetic_energy", "with v = dq/dt:\n", "v"), ("kinetic_energy", "ω_i = dq_i/dt;", "ω"),
+     ("kinetic_energy", "w = qd;", "w")],
+)  # fmt: skip
+def test_a_vector_that_is_the_rates(quantity: str, left: str, right: str) -> None:
+    v = right
+    text = (
+        f"1/2*(m1+m2)*l1^2*{v}1^2 + 1/2*m2*l2^2*({v}1+{v}2)^2 + m2*l1*l2*cos(q2)*{v}1*({v}1+{v}2)"
+    )
+    assert _agrees("planar2r", quantity, f"{left} T = {text}")
+
+
+@pytest.mark.parametrize(
+    ("place", "entry"), [("(2,3)", "jacobian[4,2]"), ("(3,1)", "jacobian[5,0]")]
+)
+def test_the_angular_part_of_a_jacobian_by_its_places(place: str, entry: str) -> None:
+    told = {"jacobian[4,2]": "-cos(q1+q2)", "jacobian[5,0]": "1"}[entry]
+    assert _agrees("spatial3r", entry, f"Jw{place} = {told}")

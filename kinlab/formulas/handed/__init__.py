@@ -8,7 +8,6 @@ module          what it holds
 ``columns``     A column of names before a column of formulas
 ``constants``   A free constant behind a potential
 ``equations``   Equations that give an entry otherwise than by its name alone, solved for it
-``general``     What is explained for every joint at once: ``c_i = cos(q_i)``
 ``letters``     Letters and signs of word processors and web pages
 ``prose``       Which words beside a formula may change what it claims
 ``rates``       Rates by the names that programs of algebra give them

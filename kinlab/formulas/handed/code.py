@@ -64,6 +64,13 @@ _PROMPT = re.compile(
 _ANSWER = re.compile(r"[ \t]*Out")
 _PRINTED = re.compile(r"^\s*(?:[A-Za-z]+:[ \t]*)?print\s*\([^\n=]*\)[ \t;]*\n(?=\s*\S)")
 """What prints the formula below."""
+_COMMENTED = re.compile(
+    r"[ \t]*(?:(?<!\\)%+|(?<![:/])//(?!=)|(?<![^\s;])#(?![\d{]))([^\n]*=[^\n]*)"
+    r"|/\*([^\n]*?=[^\n]*?)\*/|\(\*([^\n]*?=[^\n]*?)\*\)"
+)
+"""Comments with equations, of Python, MATLAB, LaTeX, C and Mathematica."""
+_SO_ON = re.compile(r"(?:\betc\.?|\.{3}|…|\busw\.?|等)[\s.]*$|\b(?:where|with|and|mit|wobei|und)\b")
+_GIVES = re.compile(r"([A-Za-z]{1,5}_?\d{0,3}|\\?[A-Za-z]+_\{?\w{1,4}\}?)\s*=(?!=)\s*([^=]+)")
 _ROWS = re.compile(
     r"(\s*[A-Za-z]\w*(?:\([\w, ]*\))?[ \t]*:?=)?\s*"
     r"(\[[^\n]*\][ \t,;]*(?:\n[ \t]*\[[^\n]*\][ \t,;]*)+)\s*"
@@ -92,6 +99,23 @@ def without_prompts(text: str) -> str:
         if not asked or k == len(lines) - 1:
             kept.append(plain)
     return "\n".join(kept)
+
+
+def with_definitions(text: str) -> str:
+    """What comments give names of the formula, in front of it: ``# c12 = cos(q1 + q2)``."""
+    comments = [*_COMMENTED.finditer(text)]
+    if not comments:
+        return text
+    rest = _COMMENTED.sub("", text)
+    made = []
+    for comment in comments:
+        inside = next(part for part in comment.groups() if part is not None)
+        for piece in parts_at(_SO_ON.sub("", inside), ",;"):
+            found = _GIVES.fullmatch(piece.strip())
+            name = re.escape(found[1]) if found else ""
+            if found and re.search(rf"(?<![\w\\]){name}(?![\w(]|\s*:?=)", rest):
+                made.append(piece.strip())
+    return "; ".join([*made, rest.strip()]) if made else text
 
 
 def _rows_together(text: str) -> str:

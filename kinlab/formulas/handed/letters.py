@@ -16,11 +16,15 @@ _UNSEEN = dict.fromkeys(
 _PLAIN = str.maketrans(
     {"∙": "*", "∗": "*", "•": "*", "⁎": "*", "⨯": "*", "∕": "/", "⁄": "/"}
     | {"\u2062": " ", "\u00a0": " ", "\u2009": " ", "\u202f": " ", "\u2003": " "}
+    | {"ᵢ": "_i", "ⱼ": "_j", "ₖ": "_k"}
     | {"〖": "(", "〗": ")", "∴": " ", "⇒": " ", "⟹": " "}
 )
 _FRACTION = re.compile("(\\d\\s?)?([⅓⅔¼¾⅕⅖⅗⅘⅙⅚⅛⅜⅝⅞½])")
 _APART = re.compile("(?<=[A-Za-z\u03b1-\u03c9\u03d1\u03d5]) ([\u0307\u0308])")
 """A dot above a letter with a blank between, as word processors leave it."""
+_ALIKE = re.compile("(?<![\u0400-\u04ff\\w])[ТКМСВАЕНРХПГ](?=[\\d₁-₉]{0,2}\\s{0,3}[=*·])")
+_AS_LATIN = str.maketrans("ТКМСВАЕНРХПГ", "TKMCBAEHPXVG")
+"""Letters of Cyrillic that a formula may have for Latin ones; ``П`` is the potential energy."""
 _BELOW = re.compile(r"<sub>\s*(\w{1,6})\s*</sub>", re.IGNORECASE)
 _ABOVE = re.compile(r"<sup>\s*(\d)\s*</sup>", re.IGNORECASE)
 _BREAK = re.compile(r"<br\s*/?>", re.IGNORECASE)
@@ -40,7 +44,7 @@ def plain_letters(text: str, place: str) -> str:
         return text
     text = _MATHEMATICAL.sub(lambda found: unicodedata.normalize("NFKC", found[0]), text)
     text = text.translate(_UNSEEN).translate(_PLAIN)
-    text = _APART.sub(r"\1", text)
+    text = _ALIKE.sub(lambda found: found[0].translate(_AS_LATIN), _APART.sub(r"\1", text))
     return _FRACTION.sub(lambda found: _fraction(found, place), text)
 
 

@@ -6,10 +6,9 @@ import re
 import unicodedata
 
 from kinlab.formulas.handed.clauses import Holds, without_clauses
-from kinlab.formulas.handed.code import without_code, without_prompts
+from kinlab.formulas.handed.code import with_definitions, without_code, without_prompts
 from kinlab.formulas.handed.columns import of_column
 from kinlab.formulas.handed.constants import without_constant
-from kinlab.formulas.handed.general import for_each_joint
 from kinlab.formulas.handed.letters import plain_letters, siciliano_s_letters, without_marks
 from kinlab.formulas.handed.prose import doubtful
 from kinlab.formulas.handed.rates import MOVING, plain_rates
@@ -21,6 +20,7 @@ from kinlab.formulas.handed.words import (
 )
 from kinlab.formulas.signs.brackets import closes
 from kinlab.formulas.signs.dressed import undressed
+from kinlab.formulas.signs.general import for_each_joint
 from kinlab.formulas.signs.macros import written_out
 from kinlab.formulas.signs.remarks import without_numbers
 from kinlab.formulas.text import refuse_nested
@@ -112,7 +112,11 @@ _WHERE = re.compile(
 )
 _AND = re.compile(rf"(?<=\s)(?:et|y|e|и)\s+(?={_NAMED})")
 """What stands between a formula and what is explained behind it, and between two such."""
-_FOLLOWS = re.compile(r"\s*(?:(?<![<=>])=>|⇒|⟹)\s*")
+_IN_WORDS = re.compile(r"\\text\s*\{\s*([()\[\]])\s*\}")
+"""A bracket that is set as words are: ``\\text{(}d_3 = q_3)``."""
+_FOLLOWS = re.compile(
+    r"\s*(?:(?<![<=>])=>|⇒|⟹)\s*|\s*(?:→|⟶|∴)\s*(?=\$?\\?[A-Za-zα-ωΑ-Ω][\w{},₁-₉]{0,12}\s*=)"
+)
 """What follows from what stands before is an equation of its own."""
 _ON_A_LINE = re.compile(r"\n\s*(?=(?:with|mit)\s)")
 
@@ -138,10 +142,10 @@ def as_formula(
         ExpressionError: what can be read in two ways, or a clause that is not so.
     """
     refuse_nested(text, place)
-    text = _BOLD.sub(r"\1", written_out(without_prompts(text), place))
+    text = _BOLD.sub(r"\1", written_out(with_definitions(without_prompts(text)), place))
     text = _GREEK_ANGLE.sub(r"\1(\2)", text) if "\\" not in text else text
     text = _ACCENTED.sub(lambda letter: unicodedata.normalize("NFC", letter[0]), text)
-    text = _FOLLOWS.sub("\n", text)
+    text = _FOLLOWS.sub("\n", _IN_WORDS.sub(r"\1", text))
     text = for_each_joint(_in_english(with_units_inside(_STAR_SAID.sub("", text))))
     text = _ABBREVIATED.sub(_where, text)
     text = _defined(_DOLLARS.sub("$$", text))

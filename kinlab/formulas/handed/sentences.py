@@ -147,6 +147,8 @@ def _is_word(word: str, text: str, found: re.Match[str]) -> bool:
     """Whether letters are a word of a sentence, and no name in a formula."""
     if "\u4e00" <= word[0] <= "\u9fff":
         return word not in ("常数", "常量")
+    if "\u0400" <= word[0] <= "\u04ff":
+        return True  # no formula has names like these
     front, behind = text[: found.start()].rstrip(" "), text[found.end() :]
     listed = is_listed(word)
     if is_program(word) or re.match(r"\s*&?\s*:?=", behind):

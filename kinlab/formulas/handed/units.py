@@ -20,7 +20,12 @@ _BEHIND_MATHS = re.compile(
 
 def with_units_inside(text: str) -> str:
     """Units behind a number's dollars within these: ``$l_1 = 0.5$ m``."""
-    return _BEHIND_MATHS.sub(r"\\,\\text{ \1}$", text)
+    return _BEHIND_MATHS.sub(_within, text)
+
+
+def _within(found: re.Match[str]) -> str:
+    """A unit of the SI is left out."""
+    return rf"\,\text{{ {found[1]}}}$" if found[1][:2] in ("mm", "cm") else "$"
 
 
 Size = tuple[int, int, int]

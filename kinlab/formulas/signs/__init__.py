@@ -7,6 +7,7 @@ module        what it holds
 ``brackets``  Where brackets are closed, and what stands outside of all of them
 ``degrees``   Angles in degrees, as angles in radians
 ``dressed``   LaTeX as it is dressed for a page: boxes, arrows, colours, old commands
+``general``   What is explained for every joint at once: ``c_i = cos(q_i)``
 ``latex``     LaTeX of the textbooks as plain arithmetic text, which the whitelist parser then
               reads
 ``letters``   Letters and signs of Unicode as plain text or LaTeX

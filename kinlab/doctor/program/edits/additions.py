@@ -63,6 +63,8 @@ _TYPED = 0.14
 """What it costs more to transpose numbers that are typed: they would be typed so."""
 _AS_GIVEN = 0.02
 """What it is likelier of what a line only takes over: ``n = wrench[3:]``."""
+_OF_ANOTHER_KIND = 0.04
+"""What a term costs more beside a name that begins with another letter."""
 _WITHIN = 1.16
 """Cost of a minus in front of a sum that is a factor."""
 _GIVEN_ON = 1.12
@@ -427,6 +429,7 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
             dear = 0.0 if " + ".join(both) in scope.pieces_here(()) else dear
             if _stems(text, own) in scope.sums:  # a2 + r2 beside a3 + r3
                 yield here.instead(ast.BinOp(scalar, ast.Add(), node), "missing term", _AS_THERE)
+            dear += _OF_ANOTHER_KIND * (text[0] != own[0])
             rest = _REST if text[0] in "lLar" and _of_one_link(text, own) else 1.05
             for op, cost in ((ast.Add(), 1.0), (ast.Sub(), rest)):
                 new = ast.BinOp(node, op, scalar)

@@ -13,7 +13,7 @@ from math import pi
 
 import numpy as np
 
-from kinlab.doctor.bytecode.syntax import called, copied, names, nodes, text_of
+from kinlab.doctor.bytecode.syntax import called, copied, factors, names, nodes, text_of
 from kinlab.doctor.program.edits import exchanges
 from kinlab.doctor.program.edits.additions import as_a_term
 from kinlab.doctor.program.edits.blocks import of_blocks
@@ -59,6 +59,8 @@ _GATHERED = 1.0
 """What it is to set anew in a loop what was begun before it."""
 _BOTH = 1.14
 """What an inverse's transpose for a transpose is far-fetched."""
+_TWICE = 0.1
+"""What a term costs more that makes another one double."""
 _SUMMED = 0.06
 """What a sign or factor costs more in a sum of names, each of which has a line of its own."""
 _ENTRIES = ast.Name | ast.Subscript | ast.Attribute
@@ -106,6 +108,9 @@ def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[Pro
                     beside = _rotations_beside(here, observed)
                     added = any(x.kind == "missing term" for x in every)
                     terms = _terms_beside(here) if added else set()
+                    product = _products_beside(here) if added else ([], [])
+                    if product[1]:
+                        every = (*(_doubling(x, *product) for x in every),)
                     found += [
                         _in_order(x)
                         for x in every
@@ -139,6 +144,33 @@ def _terms_beside(here: Here) -> set[str]:
             break
         whole = above
     return {text_of(one) for one in summands(whole)} if isinstance(whole, ast.expr) else set()
+
+
+def _products_beside(here: Here) -> tuple[list[str], list[list[str]]]:
+    """The factors beside an expression in its product, and those of the other terms of the sum."""
+    whole: ast.AST = here.node
+    above = [*here.above]
+    while above and isinstance(above[-1], ast.BinOp) and isinstance(above[-1].op, ast.Mult):
+        whole = above.pop()
+    sums = whole
+    while above and isinstance(above[-1], ast.BinOp) and isinstance(above[-1].op, ast.Add):
+        sums = above.pop()
+    if whole is here.node or sums is whole:
+        return [], []
+    assert isinstance(whole, ast.expr) and isinstance(sums, ast.expr)
+    own = [text_of(one) for one in factors(whole) if one is not here.node]
+    others = [sorted(map(text_of, factors(x))) for x in summands(sums) if x is not whole]
+    return own, others
+
+
+def _doubling(edit: ProgramEdit, own: list[str], others: list[list[str]]) -> ProgramEdit:
+    """The edit, dearer where a term that it adds to a factor is there: ``(a + b)*r + b*r``."""
+    new = edit.changes[0].new
+    if edit.kind != "missing term" or not isinstance(new, ast.BinOp):
+        return edit
+    put = [one for one in (new.left, new.right) if text_of(one) != text_of(edit.node)]
+    twice = len(put) == 1 and sorted([*own, text_of(put[0])]) in others
+    return replace(edit, cost=edit.cost + _TWICE) if twice else edit
 
 
 def _once_more(edit: ProgramEdit, terms: set[str]) -> bool:

@@ -12,7 +12,7 @@ from functools import partial
 
 _LETTERS = "ijk"
 _GENERAL = re.compile(
-    r"(?<![\w\\}])(?:(?P<name>\\?[A-Za-z]{1,6})_\s?"
+    r"(?<![\w\\}])(?:(?P<name>\\?[A-Za-z]{1,6}|[α-ω])_\s?"
     r"(?:\{\s?(?P<c>[cC]?)\s?(?P<braced>[ijk]{1,3})\s?\}|(?P<below>[ijk]{1,3}))"
     r"|(?P<short>[csCSlmI]|lc)(?P<glued>[ijk]{1,3}))"
     r"\s*(?::\s?=|=|≡|\\equiv(?![A-Za-z]))\s*(?=\S)"
@@ -30,12 +30,15 @@ _FOR_ALL = re.compile(
 """Which joints there are: ``i = 1, ..., n``."""
 
 
-_POSITIONS = r"(?:\\(?:mathbf|boldsymbol|bm|vec)\s?\{?\s?)?\\?(?:theta|q|θ)\s?\}?"
+_POSITIONS = r"(?:\\(?:mathbf|boldsymbol|bm|vec)\s?\{?\s?)?\\?(?:theta|q|θ)\s?\}?(?:_\{?[ijk]\}?)?"
+_INDEX = r"(?:_\{?[ijk]\}?)?"
 _RATES = re.compile(
-    r"(?<![\w\\}])(?P<name>[A-Za-zα-ω]|\\[a-z]{2,6})\s?=\s?(?:"
-    rf"(?P<once>d{_POSITIONS}/dt|\\dot\s?\{{?\s?{_POSITIONS}\s?\}}?|[qθ]\u0307|(?:qd|dq)(?!\w))"
-    rf"|(?:d(?:\^\{{?2\}}?|²){_POSITIONS}/dt(?:\^\{{?2\}}?|²)|\\ddot\s?\{{?\s?{_POSITIONS}\s?\}}?|[qθ]\u0308"
-    r"|(?:qdd|ddq)(?!\w)))(?![\w_₁-₉])"
+    rf"(?<![\w\\}}])(?P<name>[A-Za-zα-ω]|\\[a-z]{{2,6}}){_INDEX}\s?=\s?(?:"
+    rf"(?P<once>d{_POSITIONS}/dt|\\dot\s?\{{?\s?{_POSITIONS}\s?\}}?{_INDEX}|[qθ]\u0307{_INDEX}"
+    rf"|(?:qd|dq){_INDEX}(?!\w))"
+    rf"|(?:d(?:\^\{{?2\}}?|²){_POSITIONS}/dt(?:\^\{{?2\}}?|²)"
+    rf"|\\ddot\s?\{{?\s?{_POSITIONS}\s?\}}?{_INDEX}|[qθ]\u0308{_INDEX}"
+    rf"|(?:qdd|ddq){_INDEX}(?!\w)))(?![\w_₁-₉])"
 )
 """A vector that is that of all rates: ``v = dq/dt``, ``\\alpha = \\ddot\\theta``."""
 
