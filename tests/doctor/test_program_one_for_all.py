@@ -325,7 +325,32 @@ def f(q):
     T[:3, 3] += 0.3*T[:3, 0]
     return T
 """
+ROD = """
+from math import cos
+
+def f(q, v, tau):
+    mass, length = 2.5, 0.6
+    about = mass*length**2/12 + mass*(length/2)**2
+    return [(tau[0] - mass*9.81*length/2*cos(q[0]))/about]
+"""
+STEPS_OF_FOUR = """
+import numpy as np
+D = (0.412, 0.154, 0, 0, 0, 0.263)
+AL = (-np.pi/2, np.pi/2, 0, -np.pi/2, np.pi/2, 0)
+
+def f(q):
+    T = np.eye(4)
+    for k in range(6):
+        slide = k == 2
+        c, s = np.cos(-np.pi/2 if slide else q[k]), np.sin(-np.pi/2 if slide else q[k])
+        T = T @ np.array([[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, q[k] if slide else D[k]], [0, 0, 0, 1]])
+        c, s = np.cos(AL[k]), np.sin(AL[k])
+        T = T @ np.array([[1, 0, 0, 0.0203 if slide else 0], [0, c, -s, 0], [0, s, c, 0], [0, 0, 0, 1]])
+    return T
+"""
 _CASES = [
+    (ROD, "single_link", "forward_dynamics", [("(length/2)**2", "(length/2)")]),
+    (STEPS_OF_FOUR, "stanford", "fk", [("[0, c, -s, 0], [0, s, c, 0]", "[0, c, s, 0], [0, -s, c, 0]")]),
     (ABSOLUTE_MASSES, "planar3r", "mass_matrix", [("l[j]*m[j + 1:]", "l[j]*m[j:]")]),
     (SUMS, "planar3r", "planar_jacobian", [("on[k:]", "on[:k + 1]"), ("= up[k:]", "= on[k:]")]),
     (ROWS, "planar3r", "planar_jacobian", [(" -r2*sin(b) - r3*sin(c), -r3", " -r1*sin(a) - r3*sin(c), -r3")]),

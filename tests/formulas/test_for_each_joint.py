@@ -25,6 +25,10 @@ def _agrees(robot: str, quantity: str, text: str) -> bool:
             r"$s_{23}$, $s_{23} = \sin(\theta_2+\theta_3)$",
         ),
         ("l_{c2} with l_{ci} = l_i/2, i = 1, ..., n", "l_{c2} with l_{c2} = l_2/2,"),
+        (
+            r"s_{12} + s_1, s_{ij\ldots} = \sin(q_i+q_j+\ldots)",
+            r"s_{12} + s_1, s_{12} = \sin(q_1+q_2), s_1 = \sin(q_1)",
+        ),
         ("phi = q1 + q2", "phi = q1 + q2"),
         ("M_ij = M_ji", "M_ij = M_ji"),
         ("c1*q2, c_i = 3", "c1*q2, c_i = 3"),

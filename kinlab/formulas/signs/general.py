@@ -43,6 +43,26 @@ _RATES = re.compile(
 """A vector that is that of all rates: ``v = dq/dt``, ``\\alpha = \\ddot\\theta``."""
 
 
+_SO_ON = r"(?:\\[lc]?dots|\.{2,3}|…)"
+_ANY_SUM = re.compile(
+    rf"(?P<name>[csCS])_?\{{?(?P<letters>[ijk]{{1,3}}),?\s?{_SO_ON}[ijkn]?\}}?\s?=\s?(?P<call>\\?(?:sin|cos))\s?"
+    rf"(?:\\left)?\(\s?(?P<angle>\\?(?:theta|q|θ))_?\{{?[ijk]\}}?"
+    rf"(?:\s?\+\s?(?P=angle)_?\{{?[ijk]\}}?)*\s?\+\s?{_SO_ON}"
+    rf"(?:\s?\+\s?(?P=angle)_?\{{?[ijkn]\}}?)?\s?(?:\\right)?\)"
+)
+"""``s_{ij\\ldots} = \\sin(q_i + q_j + \\ldots)``: of as many joints as a name has."""
+
+
+def _of_any_joints(found: re.Match[str]) -> str:
+    """The definitions of all names that have the letter in front."""
+    used = rf"(?<![A-Za-z\\]){found['name']}_?(?:\{{\s?([1-9]+)\s?\}}|([1-9]+))"
+    made = []
+    for one in {x[0]: x for x in re.finditer(used, found.string)}.values():
+        angles = "+".join(f"{found['angle']}_{digit}" for digit in one[1] or one[2])
+        made.append(f"{one[0]} = {found['call']}({angles})")
+    return ", ".join(made) or found[0]
+
+
 def _with_rates(text: str) -> str:
     """The text with the rates of joints in place of the vector that they are."""
     typeset = "\\" in text
@@ -68,7 +88,7 @@ def for_each_joint(text: str) -> str:
     Args:
         text: as typed.
     """
-    text = _with_rates(text)
+    text = _ANY_SUM.sub(_of_any_joints, _with_rates(text))
     if not any(letter in text for letter in _LETTERS) or "=" not in text:
         return text
     found, at = list[tuple[int, int, re.Match[str]]](), 0

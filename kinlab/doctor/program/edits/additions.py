@@ -65,6 +65,8 @@ _AS_GIVEN = 0.02
 """What it is likelier of what a line only takes over: ``n = wrench[3:]``."""
 _OF_ANOTHER_KIND = 0.04
 """What a term costs more beside a name that begins with another letter."""
+_OF_A_WAVE = 1.08
+"""Cost of a minus in ``c, s = cos(q), sin(q)``."""
 _WITHIN = 1.16
 """Cost of a minus in front of a sum that is a factor."""
 _GIVEN_ON = 1.12
@@ -143,6 +145,9 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         given_on = here.part and isinstance(outer, ast.Return) and isinstance(node, ast.Name)
         if first and isinstance(op, ast.Add) and _is_a_factor(here):
             cost = _WITHIN
+        waves = getattr(parent, "elts", ()) if isinstance(parent, ast.Tuple) else ()
+        if len(waves) > 1 and all(isinstance(x, ast.Call) and called(x) in ANGLES for x in waves):
+            cost = _OF_A_WAVE
         if alone and (_keeps(parent, node) or given_on):
             cost = _GIVEN_ON
         if alone and _is_unpacked(here):
@@ -400,7 +405,9 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
     dot = isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult)  # (v @ u)**2
     dot = dot or (isinstance(node, ast.Call) and called(node) in ("dot", "norm", *scope.called))
     negated = isinstance(parent, ast.UnaryOp)  # -w*l
-    if (isinstance(node, ENTRIES) or dot) and not power and (operated or term or negated):
+    share = isinstance(node, ast.BinOp) and isinstance(node.op, ast.Div)
+    share = share and here.field == "right" and isinstance(getattr(parent, "op", None), ast.Mult)
+    if (isinstance(node, ENTRIES) or dot or share) and not power and (operated or term or negated):
         yield here.instead(ast.BinOp(node, ast.Pow(), number(2)), "power", 1.08)
     yield from _squares_and_products(here, scope)
     if term:

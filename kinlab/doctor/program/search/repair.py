@@ -50,6 +50,8 @@ _HEAVY, _FIRST, _HEAVY_WORK = 100_000, 150, 200_000_000
 """Work for one edit above which so many are run alone, and the others at once; work for these."""
 _AT_ONCE = 400
 """How many of them at a time."""
+_FEWEST = 16
+"""Of fewer none is looked for that spoils it for the others."""
 _RARER = 4
 """To how many of these comes one that is run alone."""
 _WEIGHED = 9000
@@ -295,7 +297,7 @@ class LineSearch:
             if self.work.done > self.in_lanes:
                 break
             some, n = others[k : k + _AT_ONCE], k // _RARER
-            told = self._run_at_once(some, own) if some else []
+            told = self._run_in_parts(some, own) if some else []
             told += self._run_alone(calling[n : n + _AT_ONCE // _RARER], variants)
             for edit, values in told:
                 self.tried.append((edit, values))
@@ -321,6 +323,16 @@ class LineSearch:
                 continue
             found += [] if values is None else [(edit, values)]
         return found
+
+    def _run_in_parts(
+        self, some: list[ProgramEdit], own: Array
+    ) -> list[tuple[ProgramEdit, Array]]:
+        """The same in halves where one that lanes cannot follow spoils it for the others."""
+        found = self._run_at_once(some, own)
+        if found or len(some) < _FEWEST or self.work.done > self.in_lanes:
+            return found
+        half = len(some) // 2
+        return [*self._run_in_parts(some[:half], own), *self._run_in_parts(some[half:], own)]
 
     def _run_at_once(self, some: list[ProgramEdit], own: Array) -> list[tuple[ProgramEdit, Array]]:
         """What edits make of the program, as far as lanes can follow it."""

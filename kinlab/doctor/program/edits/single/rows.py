@@ -20,6 +20,8 @@ FLAT = 0.1
 """What it costs more to take a number for a matrix."""
 _THREE = 3
 """Sides of a rotation matrix."""
+_POSE = 4
+"""Rows of a homogeneous transform, in which the rotation alone may be transposed."""
 _PAIR, _NUMBERS = 2, ast.Constant | ast.Name | ast.UnaryOp | ast.Attribute
 """Entries that are exchanged where they are moved on; what rows of numbers are made of."""
 _SLIDE = 1.08
@@ -229,6 +231,11 @@ def _across(here: Here, rows: Sequence[ast.expr]) -> Iterator[ProgramEdit]:
     """What is written as rows, with columns for rows."""
     entries = [one.elts for one in rows if isinstance(one, ast.List | ast.Tuple)]
     if len(entries) == len(rows) > 1 and all(len(one) == len(rows) for one in entries):
+        if len(rows) == _POSE and _is_turn(turn := [one[:-1] for one in entries[:-1]]):
+            turned = [ast.List([*one], ast.Load()) for one in zip(*turn, strict=True)]
+            beside = zip(turned, entries, strict=False)
+            new = [ast.List([*one.elts, row[-1]], ast.Load()) for one, row in beside]
+            yield here.within(here.node, "elts", [*new, rows[-1]], "transposed", _TURNED)
         columns = [ast.List([*one], ast.Load()) for one in zip(*entries, strict=True)]
         if ast.dump(ast.List([*columns])) != ast.dump(ast.List([*rows])):
             cost = _TURNED if _is_turn(entries) else 1.12 if len(rows) == _PAIR else 1.3
