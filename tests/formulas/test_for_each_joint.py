@@ -76,12 +76,16 @@ def test_moments_of_every_link(share: int, right: bool) -> None:
     ("typed", "plain"),
     [
         ("Out[3]: 2*x", "2*x"),
-        ("In [2]: simplify(T)\nOut[2]: 2*x", "2*x"),
-        (">>> print(T)\n2*x", "2*x"),
+        ("In [2]: simplify(T)\nOut[2]: 2*x", "T = 2*x"),
+        (">>> print(T)\n2*x", "T = 2*x"),
         (">>> c = 2\n>>> T = c*x", "c = 2\nT = c*x"),
         (">> T\n\nT =\n\n2*x", "T =\n2*x"),
-        ("In[1]:= Simplify[T]\nOut[1]//InputForm= 2*x", "2*x"),
-        ("print(sp.simplify(T))\n2*x", "2*x"),
+        ("In[1]:= Simplify[T[[1, 2]]]\nOut[1]//InputForm= 2*x", "T(1,2) = 2*x"),
+        ("In [1]: M[0, 1]\nOut[1]: 2*x", "M(1,2) = 2*x"),
+        (">>> a + b\n2*x", "2*x"),
+        (">>> T  # wrong\n2*x", "# wrong\nT = 2*x"),
+        (">> G(2)\nans = 2*x", "G(2) = 2*x"),
+        ("print(sp.simplify(T))\n2*x", "T = 2*x"),
         ("a > b", "a > b"),
         ("print(x)", "print(x)"),
     ],
@@ -222,3 +226,18 @@ def test_a_vector_that_is_the_rates(quantity: str, left: str, right: str) -> Non
 def test_the_angular_part_of_a_jacobian_by_its_places(place: str, entry: str) -> None:
     told = {"jacobian[4,2]": "-cos(q1+q2)", "jacobian[5,0]": "1"}[entry]
     assert _agrees("spatial3r", entry, f"Jw{place} = {told}")
+
+
+@pytest.mark.parametrize(
+    ("robot", "quantity", "text"),
+    [
+        ("planar2r", "fk[0,3]", ">>> y\nl1*c1 + l2*c12"),
+        ("planar2r", "fk[0,3]", ">>> x  # wrong sign\nl1*c1 + l2*c12"),
+        ("planar2r", "fk[0,3]", "x = l1*c1 + l2*c12  # c12 = cos(q1+q2), but the sign is wrong"),
+        ("planar2r", "gravity_torques[0]", ">> G(2)\nans = (m1+m2)*g*l1*c1 + m2*g*l2*c12"),
+        ("planar2r", "gravity_torques[0]", "In [1]: G[1]\nOut[1]: (m1+m2)*g*l1*c1 + m2*g*l2*c12"),
+    ],
+)
+def test_what_a_shell_was_asked_counts(robot: str, quantity: str, text: str) -> None:
+    with pytest.raises(ExpressionError):
+        _agrees(robot, quantity, text)

@@ -62,11 +62,21 @@ _PROMPT = re.compile(
 )
 """Prompts of IPython, Python, MATLAB and Mathematica."""
 _ANSWER = re.compile(r"[ \t]*Out")
-_PRINTED = re.compile(r"^\s*(?:[A-Za-z]+:[ \t]*)?print\s*\([^\n=]*\)[ \t;]*\n(?=\s*\S)")
+_PRINTED = re.compile(r"^\s*(?:[A-Za-z]+:[ \t]*)?print\s*\(([^\n=]*)\)[ \t;]*\n(?=\s*\S)")
 """What prints the formula below."""
+_SHOWING = re.compile(
+    r"(?:(?:sp|sympy)\.)?(?:simplify|print|pprint|expand|factor|trigsimp|latex|vpa|disp|Simplify|FullSimplify|Expand)"
+    r"[ \t]*(?:\(|\[)(.*)(?:\)|\])"
+)
+"""What only shows something, or gathers its terms."""
+_NAME = re.compile(
+    r"([A-Za-z]\w*?)(?:(\[+[ \t]*\d+(?:[ \t]*(?:,|\]\[)[ \t]*\d+)?[ \t]*\]+)"
+    r"|(\([ \t]*\d+(?:[ \t]*,[ \t]*\d+)?[ \t]*\)))?"
+)
+_OF_MATLAB = re.compile(r"^[ \t]*ans[ \t]*=[ \t]*")
 _COMMENTED = re.compile(
     r"[ \t]*(?:(?<!\\)%+|(?<![:/])//(?!=)|(?<![^\s;])#(?![\d{]))([^\n]*=[^\n]*)"
-    r"|/\*([^\n]*?=[^\n]*?)\*/|\(\*([^\n]*?=[^\n]*?)\*\)"
+    r"|/\*((?:(?!\*/)[^\n]){1,400})\*/|\(\*((?:(?!\*\))[^\n]){1,400})\*\)"
 )
 """Comments with equations, of Python, MATLAB, LaTeX, C and Mathematica."""
 _SO_ON = re.compile(r"(?:\betc\.?|\.{3}|…|\busw\.?|等)[\s.]*$|\b(?:where|with|and|mit|wobei|und)\b")
@@ -81,41 +91,65 @@ _NEAR = 30
 
 
 def without_prompts(text: str) -> str:
-    """What a shell answers, without its prompts and what it was asked: ``Out[7]: ...``.
+    """What a shell answers, without its prompts: ``Out[7]: ...``.
 
-    What a prompt's line gives a name stays, and so does the last line.
+    What it was asked is the answer's left side where that is a name, ``M[0,1]`` of Python being
+    M(1,2); what a prompt's line gives a name stays, and so do the last line and all comments.
     """
     if not _PROMPT.search(text) and not _PRINTED.match(text):
         return text
+    python = ">>>" in text or bool(re.search(r"In[ \t]?\[\d+\][ \t]?:(?!=)", text))
+    printed = _PRINTED.match(text)
     lines = [line for line in _PRINTED.sub("", text).split("\n") if line.strip()]
-    kept = []
+    kept: list[str] = []
+    name = "" if printed is None else _asked(printed[1], True)
     for k, line in enumerate(lines):
         plain = _PROMPT.sub("", line)
-        asked = (
-            plain != line
-            and not _ANSWER.match(line)
-            and "=" not in [sign for _k, sign in outside(plain)]
-        )
-        if not asked or k == len(lines) - 1:
-            kept.append(plain)
-    return "\n".join(kept)
+        prompted = plain != line and not _ANSWER.match(line)
+        if prompted and k < len(lines) - 1 and "=" not in [sign for _at, sign in outside(plain)]:
+            name = _asked(plain, python)
+            kept += [remark[0].strip()] if (remark := _REMARK.search(plain)) else []
+            continue
+        if name and not prompted:
+            plain = _OF_MATLAB.sub("", plain)
+            given = "=" in [sign for _at, sign in outside(plain)]
+            plain, name = plain if given else f"{name} = {plain.strip()}", ""
+        kept.append(plain)
+    return "\n".join(one for one in kept if one.strip())
+
+
+def _asked(text: str, python: bool) -> str:
+    """The name that a shell was asked for, its places from 1; empty where it was more."""
+    while found := _SHOWING.fullmatch(_REMARK.sub("", text).strip("; \t")):
+        text = found[1]
+    found = _NAME.fullmatch(_REMARK.sub("", text).strip("; \t"))
+    if found is None:
+        return ""
+    places = [int(one) + python for one in re.findall(r"\d+", found[2] or found[3] or "")]
+    return f"{found[1]}({','.join(map(str, places))})" if places else found[1]
 
 
 def with_definitions(text: str) -> str:
-    """What comments give names of the formula, in front of it: ``# c12 = cos(q1 + q2)``."""
-    comments = [*_COMMENTED.finditer(text)]
-    if not comments:
-        return text
-    rest = _COMMENTED.sub("", text)
-    made = []
-    for comment in comments:
+    """What comments give names of the formula, in front of it: ``# c12 = cos(q1 + q2)``.
+
+    What else a comment says stays in it.
+    """
+    rest, made = _COMMENTED.sub("", text), list[str]()
+
+    def left(comment: re.Match[str]) -> str:
         inside = next(part for part in comment.groups() if part is not None)
+        kept: list[str] = []
         for piece in parts_at(_SO_ON.sub("", inside), ",;"):
-            found = _GIVES.fullmatch(piece.strip())
+            found = _GIVES.fullmatch(piece)
             name = re.escape(found[1]) if found else ""
-            if found and re.search(rf"(?<![\w\\]){name}(?![\w(]|\s*:?=)", rest):
-                made.append(piece.strip())
-    return "; ".join([*made, rest.strip()]) if made else text
+            used = found and re.search(rf"(?<![\w\\]){name}(?![\w(]|\s*:?=)", rest)
+            (made if used else kept).append(piece)
+        if not any(kept):
+            return ""
+        return comment[0].replace(inside, f" {', '.join(filter(None, kept))}")
+
+    other = _COMMENTED.sub(left, text)
+    return "; ".join([*made, other.strip()]) if made else text
 
 
 def _rows_together(text: str) -> str:

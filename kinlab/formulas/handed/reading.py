@@ -142,6 +142,7 @@ def as_formula(
         ExpressionError: what can be read in two ways, or a clause that is not so.
     """
     refuse_nested(text, place)
+    text = _GAP.sub(lambda gap: "\n" if "\n" in gap[0] else " ", text)
     text = _BOLD.sub(r"\1", written_out(with_definitions(without_prompts(text)), place))
     text = _GREEK_ANGLE.sub(r"\1(\2)", text) if "\\" not in text else text
     text = _ACCENTED.sub(lambda letter: unicodedata.normalize("NFC", letter[0]), text)

@@ -324,9 +324,7 @@ class LineSearch:
             found += [] if values is None else [(edit, values)]
         return found
 
-    def _run_in_parts(
-        self, some: list[ProgramEdit], own: Array
-    ) -> list[tuple[ProgramEdit, Array]]:
+    def _run_in_parts(self, some: list[ProgramEdit], own: Array) -> list[tuple[ProgramEdit, Array]]:
         """The same in halves where one that lanes cannot follow spoils it for the others."""
         found = self._run_at_once(some, own)
         if found or len(some) < _FEWEST or self.work.done > self.in_lanes:
