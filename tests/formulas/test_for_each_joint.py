@@ -241,3 +241,47 @@ def test_the_angular_part_of_a_jacobian_by_its_places(place: str, entry: str) ->
 def test_what_a_shell_was_asked_counts(robot: str, quantity: str, text: str) -> None:
     with pytest.raises(ExpressionError):
         _agrees(robot, quantity, text)
+
+
+@pytest.mark.parametrize(
+    ("quantity", "front"),
+    [
+        ("kinetic_energy", "Energía potencial: "),
+        ("kinetic_energy", "Energia potenziale: "),
+        ("kinetic_energy", "La matriz de inercia es "),
+        ("kinetic_energy", "慣性行列 "),
+        ("kinetic_energy", "トルクは "),
+        ("fk[0,3]", "トルクは "),
+        ("fk[0,3]", "Velocidad: "),
+        ("gravity_torques[0]", "Par de la segunda articulación: "),
+        ("gravity_torques[0]", "Energía cinética: "),
+    ],
+)
+def test_what_another_quantity_is_called_is_not_passed_over(quantity: str, front: str) -> None:
+    """These had been words that say nothing, beside any entry."""
+    rates = "1/2*m2*l2^2*(qd1+qd2)^2 + m2*l1*l2*cos(q2)*qd1*(qd1+qd2)"
+    text = {
+        "kinetic_energy": f"K = 1/2*(m1+m2)*l1^2*qd1^2 + {rates}",
+        "fk[0,3]": "x = l1*c1 + l2*c12",
+        "gravity_torques[0]": "g1 = (m1+m2)*g*l1*c1 + m2*g*l2*c12",
+    }[quantity]
+    try:
+        found = kl.diagnose("planar2r", quantity, front + text, samples=10)
+    except ExpressionError:
+        return
+    assert any("were not read" in one for one in found.remarks)
+
+
+@pytest.mark.parametrize(
+    ("quantity", "text"),
+    [
+        ("mass_matrix[1,1]", "慣性行列の(2,2)成分: M22 = m2*l2"),
+        ("mass_matrix[1,1]", "Elemento de la matriz de inercia: M22 = m2*l2"),
+        (
+            "potential_energy",
+            "Energía potencial: V = m1*g*l1*sin(q1) + m2*g*l1*sin(q1) - m2*g*l2*sin(q1+q2)",
+        ),
+    ],
+)
+def test_what_the_entry_is_called_keeps_no_slip_from_being_told(quantity: str, text: str) -> None:
+    assert kl.diagnose("planar2r", quantity, text, samples=10).causes
