@@ -105,11 +105,11 @@ def _mistyped(case: Case, off: list[AnswerEntry], written: dict[str, Written]) -
     texts = [written[entry.label] for entry in off]
     given = {x: meant for text in texts for x, meant in text.symbols.items() if x not in text.known}
     typed = {name: value for name, meant in given.items() if (value := _as_number(meant))}
-    here = _numbers_here(case) if typed else {}
-    known = Meanings.at(here) if typed else None
-    found: list[tuple[int, str, float]] = []
+    if not typed:
+        return None
+    here = _numbers_here(case)
+    known, found = Meanings.at(here), list[tuple[int, str, float]]()
     for name, value in typed.items():
-        assert known is not None
         if known.parameter(abs(value)) is not None:
             continue  # a number of the arm's, though it may be another that is meant
         solved = (_solved(one, written[one.label], name, value, here) for one in off[:_PATIENCE])
@@ -120,16 +120,15 @@ def _mistyped(case: Case, off: list[AnswerEntry], written: dict[str, Written]) -
             if number * value > 0 and (own or made_of):
                 left = len(_still_off(case, off, _with_number(written, name, number)))
                 found += [(left, name, number)] if left < len(off) else []
-    least = min(found, default=(0, "", 0.0))
-    if not found or [left for left, *_rest in found].count(least[0]) > 1:
+    left, name, number = min(found, default=(0, "", 0.0))
+    if sum(one[0] == left for one in found) != 1:
         return None
-    left, name, number = least
-    told = _("{old} should be {new}").format(old=given[name], new=f"{number:.10g}")
+    new = f"{number:.10g}"
+    told = _("{old} should be {new}").format(old=given[name], new=new)
     said = _("{entry}: {slip} ({kind})").format(entry=name, slip=told, kind=_("number"))
     values = _with_number(written, name, number)[off[0].label].values(here)
     error = off[0].error(values, off[0].engine) if not left else 0.0
-    slip = Slip(name, ("number",), said, f"{number:.10g}", 1.0, values, True, error=error)
-    return replace(slip, defined=(name, f"{number:.10g}"))
+    return Slip(name, ("number",), said, new, 1.0, values, True, error=error, defined=(name, new))
 
 
 def _solved(

@@ -158,9 +158,10 @@ def formula_file(
     doubts: dict[str, tuple[str, list[tuple[str, str]]]] = {}
     for key, value in list(entries.items()):
         at = f"{place}: {key}"
-        text = _text(value, at) if last is None else without_its_axes(_text(value, at), key, last)
-        entries[key], remarks[key], told = as_formula(text, key, at, holds, key in whole)
-        doubts[key] = _text(value, at), told
+        text = _text(value, at)
+        plain = text if last is None else without_its_axes(text, key, last)
+        entries[key], remarks[key], told = as_formula(plain, key, at, holds, key in whole)
+        doubts[key] = text, told
         entries[key] = typed.as_column(entries[key], key)
         parts = {} if key in whole else typed.several(entries[key], key)
         if parts and not parts.keys() & entries.keys():

@@ -207,9 +207,14 @@ _LONG_BARS = re.compile(r"\\left\s*\|\s*J\s*\\right\s*\||\\lvert\s*J\s*\\rvert")
 _GAP = re.compile(r"\s{12,}")
 
 
+def without_gaps(text: str) -> str:
+    """The text with one blank for many, or one end of a line."""
+    return _GAP.sub(lambda gap: "\n" if "\n" in gap[0] else " ", text)
+
+
 def bare(text: str) -> str:
     """A formula without the dollars and environments around it, and what says nothing behind it."""
-    text = _GAP.sub(lambda gap: "\n" if "\n" in gap[0] else " ", text.translate(WIDE))
+    text = without_gaps(text.translate(WIDE))
     text, before = _LONG_BARS.sub("|J|", _COMMENT.sub("", text)).strip(), ""
     while text != before:
         before = text = without_remarks(text).strip()

@@ -172,9 +172,9 @@ class Definitions:
         of_others = min(_MOST, _TRIED // max(count * (count - 1), 1))
         for n, part in enumerate(self.parts):
             instead = _Instead(part.name, part.values[:_MOST, :_FEW], few)
+            least = min((one.cost for one in part.changes), default=0.0)
             for other in (self.formula, *self.parts[n + 1 :]):
                 most = of_others if other.name else of_formula
-                least = min((one.cost for one in part.changes), default=0.0)
                 for k, new in enumerate(other.texts[:most]):
                     if least + other.changes[k].cost >= below:
                         continue

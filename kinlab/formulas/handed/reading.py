@@ -24,6 +24,7 @@ from kinlab.formulas.signs.general import for_each_joint
 from kinlab.formulas.signs.macros import written_out
 from kinlab.formulas.signs.remarks import without_numbers
 from kinlab.formulas.text import refuse_nested
+from kinlab.formulas.typed import without_gaps
 
 _ALONE = re.compile(
     r"(?:p_?)?[xyz]|[VUPTKL]|phi|det\w*|E_?[pk]|\w*energy|lagrangian|[\w,\[\]]*[\d\]]"
@@ -52,7 +53,6 @@ _STATIC_TORQUE = re.compile(
 _DIGITS = str.maketrans("₁₂₃₄₅₆₇₈₉", "123456789")
 _PLACE_BELOW = re.compile(r"_\{\s{0,2}([A-Za-z]{2,8})\s{0,2},\s{0,2}([1-9])\s{0,2}\}")
 _OF_A_WRENCH = ("tau", "statics", "inverse_dynamics_loaded", "Q", "u")
-_GAP = re.compile(r"\s{12,}")
 _NUMBERS = re.compile(
     r"^\s*((?:\$?\\?[A-Za-z]\w*\{?\w*\}?\s*=\s*\d[\d.]*[^=:：,，;；\n]{0,12}"
     r"(?:[,，;；]\s*|\s+(?:and|und)\s+|\s*[和与]\s*|\s*(?=[:：])))+)[:：]\s*(?=\S)"
@@ -142,8 +142,8 @@ def as_formula(
         ExpressionError: what can be read in two ways, or a clause that is not so.
     """
     refuse_nested(text, place)
-    text = _GAP.sub(lambda gap: "\n" if "\n" in gap[0] else " ", text)
-    text = _BOLD.sub(r"\1", written_out(with_definitions(without_prompts(text)), place))
+    text = without_prompts(without_gaps(text))
+    text = _BOLD.sub(r"\1", written_out(with_definitions(text), place))
     text = _GREEK_ANGLE.sub(r"\1(\2)", text) if "\\" not in text else text
     text = _ACCENTED.sub(lambda letter: unicodedata.normalize("NFC", letter[0]), text)
     text = _FOLLOWS.sub("\n", _IN_WORDS.sub(r"\1", text))
@@ -151,7 +151,7 @@ def as_formula(
     text = _ABBREVIATED.sub(_where, text)
     text = _defined(_DOLLARS.sub("$$", text))
     text, numbered = without_numbers(plain_letters(text, place), place)
-    text = _GAP.sub(lambda gap: "\n" if "\n" in gap[0] else " ", text)
+    text = without_gaps(text)
     text = _OF_STATE.sub(r"\1", text) if text.count("=") > 1 else text
     if holds is not None:
         text = without_clauses(text, place, holds)

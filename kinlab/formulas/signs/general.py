@@ -10,7 +10,6 @@ import re
 import unicodedata
 from functools import partial
 
-_LETTERS = "ijk"
 _GENERAL = re.compile(
     r"(?<![\w\\}])(?:(?P<name>\\?[A-Za-z]{1,6}|[α-ω])_\s?"
     r"(?:\{\s?(?P<c>[cC]?)\s?(?P<braced>[ijk]{1,3})\s?\}|(?P<below>[ijk]{1,3}))"
@@ -30,8 +29,8 @@ _FOR_ALL = re.compile(
 """Which joints there are: ``i = 1, ..., n``."""
 
 
-_POSITIONS = r"(?:\\(?:mathbf|boldsymbol|bm|vec)\s?\{?\s?)?\\?(?:theta|q|θ)\s?\}?(?:_\{?[ijk]\}?)?"
 _INDEX = r"(?:_\{?[ijk]\}?)?"
+_POSITIONS = rf"(?:\\(?:mathbf|boldsymbol|bm|vec)\s?\{{?\s?)?\\?(?:theta|q|θ)\s?\}}?{_INDEX}"
 _RATES = re.compile(
     rf"(?<![\w\\}}])(?P<name>[A-Za-zα-ω]|\\[a-z]{{2,6}}){_INDEX}\s?=\s?(?:"
     rf"(?P<once>d{_POSITIONS}/dt|\\dot\s?\{{?\s?{_POSITIONS}\s?\}}?{_INDEX}|[qθ]\u0307{_INDEX}"
@@ -45,7 +44,8 @@ _RATES = re.compile(
 
 _SO_ON = r"(?:\\[lc]?dots|\.{2,3}|…)"
 _ANY_SUM = re.compile(
-    rf"(?P<name>[csCS])_?\{{?(?P<letters>[ijk]{{1,3}}),?\s?{_SO_ON}[ijkn]?\}}?\s?=\s?(?P<call>\\?(?:sin|cos))\s?"
+    rf"(?P<name>[csCS])_?\{{?[ijk]{{1,3}},?\s?{_SO_ON}[ijkn]?\}}?"
+    r"\s?=\s?(?P<call>\\?(?:sin|cos))\s?"
     rf"(?:\\left)?\(\s?(?P<angle>\\?(?:theta|q|θ))_?\{{?[ijk]\}}?"
     rf"(?:\s?\+\s?(?P=angle)_?\{{?[ijk]\}}?)*\s?\+\s?{_SO_ON}"
     rf"(?:\s?\+\s?(?P=angle)_?\{{?[ijkn]\}}?)?\s?(?:\\right)?\)"
@@ -89,13 +89,10 @@ def for_each_joint(text: str) -> str:
         text: as typed.
     """
     text = _ANY_SUM.sub(_of_any_joints, _with_rates(text))
-    if not any(letter in text for letter in _LETTERS) or "=" not in text:
-        return text
     found, at = list[tuple[int, int, re.Match[str]]](), 0
     while one := _GENERAL.search(text, at):
         end = at = _end_of(text, one.end())
-        letters = one["braced"] or one["below"] or one["glued"]
-        if all(_of(letter).search(text[one.end() : end]) for letter in letters):
+        if all(_of(letter).search(text[one.end() : end]) for letter in _letters_of(one)):
             found.append((one.start(), end, one))
     rest = text
     for start, end, _one in reversed(found):
@@ -116,13 +113,17 @@ def _end_of(text: str, start: int) -> int:
     return len(text)
 
 
+def _letters_of(general: re.Match[str]) -> str:
+    return general["braced"] or general["below"] or general["glued"]
+
+
 def _of(letter: str) -> re.Pattern[str]:
     return re.compile(_SUBSCRIPT.format(letter))
 
 
 def _instances(general: re.Match[str], right: str, text: str) -> list[str]:
     """The definitions of the names that stand in a text."""
-    letters = general["braced"] or general["below"] or general["glued"]
+    letters = _letters_of(general)
     head = general["name"] or general["short"]
     below = general["c"] or ""
     pattern = (

@@ -9,7 +9,7 @@ from typing import Any
 
 from kinlab.doctor.bytecode.syntax import called, copied, names, nodes, text_of
 from kinlab.doctor.program.edits.chains import SUMS, chain, joined, opposite
-from kinlab.doctor.program.edits.scope.forms import Turned, summands
+from kinlab.doctor.program.edits.scope.forms import Turned, statement_of, summands
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.entries import without_the_first
 from kinlab.doctor.program.observed import Observed, Shape
@@ -111,10 +111,9 @@ def _poses_exchanged(here: Here, value: ast.expr) -> Iterator[ProgramEdit]:
 
 def of_terms(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
     """Another term of the statement for one in a list: ``l1*c1`` for ``l2*c12`` in a matrix."""
-    statement = next((one for one in reversed(here.above) if isinstance(one, ast.stmt)), None)
-    value = getattr(statement, "value", None)
     rows = any(isinstance(one, ast.List | ast.Tuple) for one in here.above)
-    if value is None or not rows or not _is_summand(here):
+    value = getattr(statement_of(here.above), "value", None) if rows and _is_summand(here) else None
+    if value is None:
         return
     own, shape = text_of(here.node), observed.shape(here.node)
     terms = (x for row in nodes(value) if isinstance(row, ast.List | ast.Tuple) for x in row.elts)
