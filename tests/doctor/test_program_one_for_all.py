@@ -440,3 +440,70 @@ def test_a_twist_in_degrees_that_nobody_turns_is_told(tmp_path) -> None:
     slip = ("(np.pi/2, 0.35)", "(90, 0.35)")
     told = _told(TWISTS, "spatial3r", "fk", slip, tmp_path / "hand.py")
     assert "ROWS[2][0], degrees are taken for radians: 90 should be 1.5708" in told
+
+
+EXPONENTIALS = """
+import numpy as np
+
+def exp6(screw, theta):
+    w, v = screw[:3], screw[3:]
+    W = np.array([[0, -w[2], w[1]], [w[2], 0, -w[0]], [-w[1], w[0], 0]])
+    G = np.eye(3)*theta + (1 - np.cos(theta))*W + (theta - np.sin(theta))*W @ W
+    T = np.eye(4)
+    T[:3, :3] = np.eye(3) + np.sin(theta)*W + (1 - np.cos(theta))*W @ W
+    T[:3, 3] = G @ v
+    return T
+
+HOME = np.array([[1, 0, 0, 0.9], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1.0]])
+S1, S2 = np.array([0, 0, 1, 0, 0, 0.0]), np.array([0, 0, 1, 0, -0.5, 0])
+
+def f(q):
+    return exp6(S1, q[0]) @ exp6(S2, q[1]) @ HOME
+"""
+TURNED = """
+import numpy as np
+
+def f(q, qd):
+    V = np.zeros((2, 6))
+    V[0, 5] = qd[0]
+    v = np.array([0.0, 0.5*qd[0]])
+    c, s = np.cos(q[1]), np.sin(q[1])
+    R = np.array([[c, -s], [s, c]])
+    V[1, :2] = R.T @ v
+    V[1, 5] = qd[0] + qd[1]
+    return V
+"""
+COLUMNS = """
+import numpy as np
+
+def f(q):
+    c, s = np.cos(q[0]), np.sin(q[0])
+    R = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    Jv, Jw = np.array([[-0.6*s], [0.6*c], [0.0]]), np.array([[0.0], [0.0], [1.0]])
+    return np.vstack([R.T @ Jv, R.T @ Jw])
+"""
+
+
+def test_the_tool_at_home_is_a_sum_of_lengths(tmp_path) -> None:
+    """The last number of a product of exponentials is of no column: it was held against it."""
+    right = "(1 - np.cos(theta))*W + (theta - np.sin(theta))*W @ W"
+    wrong = "(theta - np.sin(theta))*W + (1 - np.cos(theta))*W @ W"
+    told = _told(EXPONENTIALS, "planar2r", "fk", (right, wrong), tmp_path / "hand.py")
+    assert right in told.split("should be")[1]
+
+
+@pytest.mark.parametrize(
+    ("text", "robot", "quantity", "wrong", "line"),
+    [
+        (TURNED, "planar2r_rods", "link_velocities", "R @ v", "line 10"),
+        (COLUMNS, "single_link", "jacobian_tool", "R @ Jv", "line 8"),
+    ],
+)
+def test_a_right_rotation_or_column_is_not_spoilt(
+    text, robot, quantity, wrong, line, tmp_path
+) -> None:
+    """Where the vector has one coordinate alone another sign in the matrix does as well."""
+    right = wrong.replace("R @", "R.T @")
+    told = _told(text, robot, quantity, (right, wrong), tmp_path / "hand.py")
+    assert f"{line}, the transpose" in told
+    assert right in told.split("should be")[1]

@@ -255,6 +255,9 @@ def test_what_a_shell_was_asked_counts(robot: str, quantity: str, text: str) -> 
         ("fk[0,3]", "Velocidad: "),
         ("gravity_torques[0]", "Par de la segunda articulación: "),
         ("gravity_torques[0]", "Energía cinética: "),
+        ("fk[0,3]", "acceleration: "),
+        ("fk[0,3]", "加速度 "),
+        ("kinetic_energy", "joint acceleration "),
     ],
 )
 def test_what_another_quantity_is_called_is_not_passed_over(quantity: str, front: str) -> None:
@@ -285,3 +288,18 @@ def test_what_another_quantity_is_called_is_not_passed_over(quantity: str, front
 )
 def test_what_the_entry_is_called_keeps_no_slip_from_being_told(quantity: str, text: str) -> None:
     assert kl.diagnose("planar2r", quantity, text, samples=10).causes
+
+
+def test_a_remark_on_a_definition_in_front_is_passed_over() -> None:
+    rows = r"\begin{pmatrix} h\dot q_2 & h(\dot q_1 + \dot q_2) \\ %sh\dot q_1 & 0 \end{pmatrix}"
+    front = "With h = -m_2 l_1 l_{c2} \\sin q_2 (Spong's Christoffel symbols):\nC = "
+    assert _agrees("planar2r_rods", "coriolis_matrix", front + rows % "-")
+    assert not _agrees("planar2r_rods", "coriolis_matrix", front + rows % "")
+    with pytest.raises(ExpressionError):
+        front = front.replace("Spong's Christoffel symbols", "this is Spong's, without the sign")
+        _agrees("planar2r_rods", "coriolis_matrix", front + rows % "-")
+
+
+@pytest.mark.parametrize("rate", ["d3dd", "d3_ddot", "d3ddot", "ddd3"])
+def test_the_acceleration_of_a_slide(rate: str) -> None:
+    assert _agrees("scara", "inverse_dynamics[2]", f"F3 = (m3 + m4 + 2.0)*{rate} - (m3 + m4)*g")

@@ -301,6 +301,14 @@ _EMBEDDINGS: tuple[Callable[[Array], Array | None], ...] = (
 """A value as one in space: as it is, and what a plane arm's formulas leave out."""
 
 
+def in_space(values: Sequence[Array]) -> Iterator[list[Array]]:
+    """Values of a plane arm's formula as ones in space, in each way that there is."""
+    for embed in _EMBEDDINGS[1:]:
+        shown = [embed(value) for value in values]
+        if all(one is not None for one in shown):
+            yield [one for one in shown if one is not None]
+
+
 def _one(known: Glossary, senses: list[Sense], value: Array) -> Sense | None:
     """The one thing that several are: its number and frame only where all have the same."""
     if len({(sense.what, sense.of) for sense in senses}) != 1:

@@ -25,7 +25,11 @@ from kinlab.symbolic.vocabulary import Linear, vocabulary
 _INDEXED = re.compile(r"([A-Za-z]+)(\d*)")
 _MOTION = re.compile(r"q(d{0,2})\d+")
 _SEVERAL = re.compile(r"(q|qd|qdd|dq|ddq)([1-9]{2,})")
-_SLIDES = (("d{k}",), ("dd{k}", "d{k}dot", "ddot{k}"), ("ddd{k}", "d{k}ddot", "dddot{k}"))
+_SLIDES = (
+    ("d{k}",),
+    ("dd{k}", "d{k}dot", "ddot{k}", "d{k}d", "d{k}_dot"),
+    ("ddd{k}", "d{k}ddot", "dddot{k}", "d{k}dd", "d{k}_ddot"),
+)
 _SUMMED = re.compile(r"phi_?(\d) *\+ *phi_?\d")
 _OF_CENTRE = re.compile(r"I(?:C|c|G|S|cm)(\d)")
 """I_{C_1} and I_{G1}: the inertia about the centre of mass, which the robot's I1 is."""

@@ -173,7 +173,9 @@ _COMMENTS = re.compile(
     r"|(?:^|[ \t\n])#(?![\d{])([^\n]+)",
     re.DOTALL,
 )
-_BEHIND = re.compile(r"(?<=[\w)}\]])[ \t]{1,9}\(([^()]{8,100})\)\s{0,9}\.?\s{0,9}$")
+_BEHIND = re.compile(
+    r"(?<=[\w)}\]])[ \t]{1,9}\(([^()]{8,100})\)(?:\s{0,9}\.?\s{0,9}$|(?=[ \t]{0,9}:[ \t]{0,9}\n))"
+)
 _PLAIN_WORDS = re.compile(r"(?:[^\W\d_]|\d|(?<=\d)[.,](?=\d)|(?<=\w)[-'’](?=\w)|[.,;:]?\s|[.,;:])+")
 _NO_WORDS = re.compile(
     r"[^\W\d_]\d|\d[^\W\d_]|[\u0370-\u03ff]|(?<![^\W\d_])(?:sin|cos|tan|sqrt|exp)"
@@ -182,27 +184,29 @@ _NO_WORDS = re.compile(
 _SMALL_WORDS = (
     r"\b(?:the|of|from|for|is|are|in|by|with|and|as|see|to|only|without|der|die|das|ist|sind|von|vom|aus"
     r"|im|mit|und|nur|ohne|siehe|la|le|les|el|du|de|des|del|della|est|es)\b"
+    r"|(?<=\w)['’]s\b|:\s"
 )
-"""Words that no formula has."""
+"""Words, and signs, that no formula has."""
 
 
 def without_remark_behind(text: str, place: str) -> str:
     """The text without words in parentheses behind it: ``(2.0 kg from the rotor)``.
 
+    Nor behind a definition in front: ``h = m*l1*l2 (Spong's symbols):``.
+
     Raises:
         ExpressionError: they change what the formula claims.
     """
-    found = _BEHIND.search(text)
-    inside = found[1] if found else ""
-    words = re.findall(r"[^\W\d_]{3,}", inside)
-    small = words and re.search(_SMALL_WORDS, inside, re.IGNORECASE)
-    if found is None or not small or _NO_WORDS.search(inside):
-        return text  # (alpha beta gamma) may be a factor
-    if not _PLAIN_WORDS.fullmatch(inside):
-        return text
-    if _OTHERWISE.search(inside) or _MORE.search(inside):
-        raise refused(place, _CHANGED, words=inside)
-    return text[: found.start()]
+    for found in reversed([*_BEHIND.finditer(text)]):
+        inside = found[1]
+        words = re.findall(r"[^\W\d_]{3,}", inside)
+        small = words and re.search(_SMALL_WORDS, inside, re.IGNORECASE)
+        if not small or _NO_WORDS.search(inside) or not _PLAIN_WORDS.fullmatch(inside):
+            continue  # (alpha beta gamma) may be a factor
+        if _OTHERWISE.search(inside) or _MORE.search(inside):
+            raise refused(place, _CHANGED, words=inside)
+        text = text[: found.start()] + text[found.end() :]
+    return text
 
 
 def refuse_comments(text: str, place: str) -> None:

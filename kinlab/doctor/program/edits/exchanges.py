@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from itertools import combinations
 from typing import Any
 
-from kinlab.doctor.bytecode.syntax import called, copied, names, nodes, text_of
+from kinlab.doctor.bytecode.syntax import beginning, called, copied, names, nodes, text_of
 from kinlab.doctor.program.edits.chains import SUMS, chain, joined, opposite
 from kinlab.doctor.program.edits.scope.forms import Turned, statement_of, summands
 from kinlab.doctor.program.edits.scope.part import Scope
@@ -19,6 +19,8 @@ _ANGLES = 1.13
 """Cost of the joint before in every angle of a statement."""
 _OF_ROWS = 1.15
 """Cost of one row for another wherever a statement reads it."""
+_FRONTS = 1.1
+"""Cost of what stands in front of two terms, exchanged."""
 _TURNED = 1.02
 """Cost of a rotation in the plane the other way: ``c*x + s*y, -s*x + c*y``."""
 _MOST = 6
@@ -38,6 +40,7 @@ def of_statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
             uses.setdefault(ast.unparse(node), []).append(node)
     yield from _rows_throughout(here, value)
     yield from _poses_exchanged(here, value)
+    yield from _coefficients_exchanged(here, value, observed)
     shapes: dict[str, Shape | None] = {}
     for text, found in uses.items():
         shapes[text] = observed.shape(found[0])
@@ -107,6 +110,22 @@ def _poses_exchanged(here: Here, value: ast.expr) -> Iterator[ProgramEdit]:
             both = {one: ast.Name(other, ast.Load()), other: ast.Name(one, ast.Load())}
             new = Renamed(dict[str, ast.expr](both)).of(entry)
             yield here.within(entries, k, new, "names exchanged", _ANGLES)
+
+
+def _coefficients_exchanged(
+    here: Here, value: ast.expr, observed: Observed
+) -> Iterator[ProgramEdit]:
+    """Two terms of a sum with the sum in front of one another: ``(1 - c)*W + (t - s)*W @ W``."""
+    first, terms = chain(value, SUMS)
+    for one, other in combinations([first, *(term for _op, term in terms)], 2):
+        heads = [beginning(x) for x in (one, other)]
+        fronts = [x for x in heads if isinstance(x, ast.BinOp) and isinstance(x.op, SUMS)]
+        if len(fronts) < 2:
+            continue
+        texts = [text_of(x) for x in fronts]
+        if texts[0] != texts[1] and all(observed.shape(x) == () for x in fronts):
+            new = _Swapped({texts[0]: fronts[1], texts[1]: fronts[0]}).visit(copied(value))
+            yield here.within(here.node, "value", new, "names exchanged", _FRONTS)
 
 
 def of_terms(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
@@ -283,3 +302,17 @@ class Renamed(ast.NodeTransformer):
         return node
 
     visit_Attribute = visit_Subscript = _piece
+
+
+class _Swapped(ast.NodeTransformer):
+    """Other sums for sums, by what they are as text."""
+
+    def __init__(self, others: dict[str, ast.expr]) -> None:
+        self.others = others
+
+    def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
+        other = self.others.get(text_of(node))
+        if other is not None:
+            return copied(other)
+        self.generic_visit(node)
+        return node

@@ -109,6 +109,8 @@ def arm_apart(
     found = [*numbers_of(trial, observed)]
     turned = twisted_by(table, found)
     cells = _cells(table, float(np.linalg.norm(robot.model.gravity.linear)))
+    far = _far_at_home(table, cells)
+    cells += _at_home(table, far)
     every = (node for tree in trial.trees for node in nodes(tree) if isinstance(node, ast.UnaryOp))
     negative = {id(node.operand) for node in every if isinstance(node.op, ast.USub)}
     names = {name: k for k, name in enumerate(trial.program.space)}
@@ -124,7 +126,7 @@ def arm_apart(
     carried |= {cells[k].which for _one, k in ways[0]}
     back = _opposite(table, carried)
     other = _apart(table, carried | {*back.values()}, reader.tied | back, turned, reader.odd)
-    new = _cells(other, 0.0)
+    new = _cells(other, 0.0) + _at_home(other, far)
     puts = [
         [
             one.times(new[k].value / cells[k].value)
@@ -561,6 +563,28 @@ def _cells(table: DHTable, gravity: float) -> list[_Cell]:
         put("kept", "kept", -1, (), _strange(pose[:3, :3].ravel()))
     put("kept", "kept", -1, (), [gravity])
     return cells
+
+
+def home_of(table: DHTable) -> Array:
+    """The coordinates of an arm's frames and of its tool while all joints are at zero."""
+    still = np.zeros(table.n)
+    points: Array = np.concatenate([table.frames(still), table.fk(still)])[:, :3, 3].ravel()
+    return points
+
+
+def _far_at_home(table: DHTable, cells: Sequence[_Cell]) -> list[int]:
+    """Which of these coordinates are none of the table's lengths: the points of screw axes."""
+    lengths = np.array([0.0, *(one.value for one in cells if one.kind == "length")])
+    far: dict[float, int] = {}
+    for k, x in enumerate(np.abs(home_of(table)).tolist()):
+        if not _close(np.abs(lengths), x).any() and not any(_close(np.array([*far]), x)):
+            far[x] = k
+    return [*far.values()]
+
+
+def _at_home(table: DHTable, which: Sequence[int]) -> list[_Cell]:
+    points = home_of(table)
+    return [_Cell("length", ("home", k), (), float(points[k])) for k in which]
 
 
 def _strange(values: Iterable[float]) -> list[float]:

@@ -17,7 +17,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import beginning, called, factors, names, nodes, pieces
-from kinlab.doctor.glossary.meaning import as_vector
+from kinlab.doctor.glossary.meaning import in_space
 from kinlab.doctor.glossary.textbook import Glossary, Row, Sense
 from kinlab.doctor.program.edits.scope.forms import summands
 from kinlab.doctor.program.grounds.called import kinds_called, stem, unlike
@@ -540,8 +540,11 @@ class Grounds:
     def thing(self, values: list[Array]) -> Sense | None:
         """A thing of the arm's that a value is at all the states: the first of several."""
         found = self._row(values)
-        if found is None and self.known[0].plane and values[0].shape in ((), (2,)):
-            found = self._row([x for x in map(as_vector, values) if x is not None])
+        if found is None and 1 in values[0].shape:  # a column, or a row
+            values = [np.squeeze(value) for value in values]
+            found = self._row(values)
+        if found is None and self.known[0].plane:
+            found = next(filter(None, map(self._row, in_space(values))), None)
         return found
 
     def _row(self, values: list[Array]) -> Sense | None:

@@ -14,6 +14,7 @@ import numpy as np
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.numbers.as_the_arm import of_other_rows, of_table
 from kinlab.doctor.program.edits.numbers.data import numbers
+from kinlab.doctor.program.grounds.apart import home_of
 from kinlab.doctor.program.grounds.scaled import is_own, own_numbers
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import ProgramEdit
@@ -75,9 +76,7 @@ def _home(robot: Any) -> set[float]:
     table = table_of(robot)
     if table is None:
         return set()
-    still = np.zeros(table.n)
-    points = np.concatenate([table.frames(still), table.fk(still)])[:, :3, 3]
-    return {*np.abs(np.round(points, _DECIMALS)).ravel().tolist()} - {0.0}
+    return {*np.abs(np.round(home_of(table), _DECIMALS)).tolist()} - {0.0}
 
 
 def is_slip(typed: float, meant: float) -> bool:

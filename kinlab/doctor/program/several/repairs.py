@@ -138,6 +138,7 @@ def single(search: LineSearch) -> list[ProgramRepair]:
 def _without_right_ones(search: LineSearch) -> LineSearch:
     """The search without the edits that are right alone: for two in place of one."""
     other = copy.copy(search)
+    other.wide = False
     right = search.asked.right
     other.tried = [(edit, values) for edit, values in search.tried if not right(values).all()]
     return other
