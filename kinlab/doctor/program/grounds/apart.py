@@ -116,7 +116,9 @@ def arm_apart(
     names = {name: k for k, name in enumerate(trial.program.space)}
     unasked = frozenset[str]() if masses else frozenset(("mass", "moment", "centre"))
     labels = Labels(trial, table.n)
-    reader = _Reader(table.n, cells, labels, found, negative, _summed(trial), names, unasked)
+    rotors = np.array([link.armature for link in table.links])
+    given = table.n, cells, labels, found, negative, _summed(trial), names, unasked, rotors
+    reader = _Reader(*given)
     items = sorted(reader.items, key=lambda item: len(item.options))
     ways = [*islice(_ways(items, frozenset()), _WAYS + 1)]
     if not ways:
@@ -218,6 +220,7 @@ class _Reader:
         summed: those in sums of nothing but numbers.
         names: of the program, in the order in which they are defined.
         unasked: kinds of numbers that have no part in what is asked.
+        rotors: the inertias of the drives' rotors, which may be called as the links' are.
 
     Attributes:
         items: numbers, and what they may be.
@@ -237,7 +240,9 @@ class _Reader:
         summed: set[int],
         names: dict[str, int],
         unasked: frozenset[str],
+        rotors: Array,
     ) -> None:
+        self.rotors = rotors
         self.unasked = unasked
         self.cells, self.labels, self.negative = [*cells], labels, negative
         self.tied: dict[Which, Which] = {}
@@ -397,7 +402,8 @@ class _Reader:
                     self.fitting.add((node, one.place.place))
                 alike.add(label[0])
             elif some and link is not None and len(label[2]) < 2 and not _among(every, one.value):
-                strange += [] if _among(kept, one.value) else [label]
+                of_a_drive = _among(kept, one.value) or bool(_close(self.rotors, one.value).any())
+                strange += [] if of_a_drive else [label]
         centres = {label[0] for label in strange if self._are_centres(label[0], named)}
         for name in (label[0] for label in strange if label[0] not in centres):
             same = alike if len(name) > 1 or name in "lmij" else alike & {name}

@@ -511,7 +511,8 @@ def _alike(
     """
     common: dict[Any, set[str]] = {}
     for one, some in zip(found, meant, strict=True):
-        for key in _groups(one.place) if one.value else ():
+        nobodys = not some and abs(one.value) in _NOBODYS  # a rotor's 2.0 beside 0.3 and 0.1
+        for key in _groups(one.place) if one.value and not nobodys else ():
             kinds = {what for what, _k, _by in some}
             common[key] = common.get(key, kinds) & kinds
     out: list[Meant] = []
