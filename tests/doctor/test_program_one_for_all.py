@@ -507,3 +507,40 @@ def test_a_right_rotation_or_column_is_not_spoilt(
     told = _told(text, robot, quantity, (right, wrong), tmp_path / "hand.py")
     assert f"{line}, the transpose" in told
     assert right in told.split("should be")[1]
+
+
+ROTORS = """
+import numpy as np
+from math import cos, sin
+l1, l2 = 0.325, 0.275
+m1, m2, m3, m4 = 7.0, 5.0, 1.2, 0.4
+x2, y2, e = 0.145, -0.005, 0.01
+J = [0.3, 0.1, 2.0, 0.02]
+I1, I2, I3, I4 = 0.1, 0.055, 0.0008, 0.0006
+
+def f(q):
+    a4 = I4 + m4*e**2
+    k2 = I2 + I3 + m2*(x2**2 + y2**2) + (m3 + m4)*l2**2
+    b = m4*e*l2*cos(q[3])
+    u = l1*(m2*(x2*cos(q[1]) - y2*sin(q[1])) + (m3 + m4)*l2*cos(q[1]))
+    w = l1*m4*e*cos(q[1] - q[3])
+    h22 = k2 + a4 + 2*b
+    h12 = h22 + u + w
+    h11 = I1 + m1*0.165**2 + (m2 + m3 + m4)*l1**2 + h22 + 2*(u + w)
+    h24, h14 = -(a4 + b), -(a4 + b + w)
+    return np.array([[h11 + J[0], h12, 0, h14], [h12, h22 + J[1], 0, h24],
+                     [0, 0, m3 + m4 + J[2], 0], [h14, h24, 0, a4 + J[3]]])
+"""
+
+
+@pytest.mark.parametrize(
+    "slips",
+    [
+        [("-(a4 + b + w)", "a4 + b + w")],
+        [("-(a4 + b + w)", "a4 + b + w"), ("(m2 + m3 + m4)*l1**2", "(m2 + m3 + m4)*l1")],
+    ],
+)
+def test_inertias_of_rotors_in_a_list_are_no_link_s(slips, tmp_path) -> None:
+    """One of them is the first link's, too: no other arm was right with the repair."""
+    found, good = asked(with_slips(ROTORS, slips), "scara", "mass_matrix", tmp_path / "hand.py")
+    assert good, found.sentence

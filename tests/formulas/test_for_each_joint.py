@@ -303,3 +303,17 @@ def test_a_remark_on_a_definition_in_front_is_passed_over() -> None:
 @pytest.mark.parametrize("rate", ["d3dd", "d3_ddot", "d3ddot", "ddd3"])
 def test_the_acceleration_of_a_slide(rate: str) -> None:
     assert _agrees("scara", "inverse_dynamics[2]", f"F3 = (m3 + m4 + 2.0)*{rate} - (m3 + m4)*g")
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "-- hold on, that is another coordinate of the tool",
+        ", that is the height of the tool, not x",
+        " (of ours the sign is the other one)",
+        ". This is the part of the first two links, that of the third comes on top.",
+    ],
+)
+def test_second_thoughts_behind_a_formula_are_heard(words: str) -> None:
+    with pytest.raises(ExpressionError):
+        _agrees("planar3r", "fk[0,3]", "x = l1*c1 + l2*c12 + l3*c123" + words)

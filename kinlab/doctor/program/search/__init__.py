@@ -7,7 +7,6 @@ module            what it holds
 ``asked``         A program beside what it should answer
 ``chosen``        Which edits of a program are tried, and what they cost
 ``company``       Of repairs by name of one line that nothing tells apart, which has company
-``influence``     Which expressions may be at fault, by the entries that they have a part in
 ``mistyped``      Numbers that are the arm's with a slip of the pen
 ``recognised``    Single values that a textbook has, told quickly
 ``repair``        Single edits that make a program right, the likeliest first

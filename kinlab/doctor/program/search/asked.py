@@ -211,10 +211,6 @@ class Asked:
         gap = np.abs(values - self._few[1])
         return (gap <= self._near).all(axis=0).ravel()
 
-    def apart(self, values: Array, own: Array) -> Any:
-        """Which entries of two answers at the first states are not the same at one of them."""
-        return (np.abs(values - own) > self._near).any(axis=0).ravel()
-
     def error(self, which: range) -> float:
         """The largest relative error at some states of the program as it stands now."""
         values = self.values(which)

@@ -30,7 +30,6 @@ from kinlab.doctor.program.search.arms import moves, other_arms_of
 from kinlab.doctor.program.search.asked import Asked
 from kinlab.doctor.program.search.chosen import chosen
 from kinlab.doctor.program.search.company import in_company
-from kinlab.doctor.program.search.influence import beside_the_fault
 from kinlab.doctor.program.search.solved import Solver
 from kinlab.doctor.program.search.units import Units
 from kinlab.doctor.program.search.work import Work
@@ -91,8 +90,6 @@ _DEAR = 0.06
 """What an edit waits longer for ten times the work."""
 _SUSPECTED = 2
 """Of so much work one part goes first to statements that are wrong though their parts are right."""
-_LOOKED_THROUGH = 150
-"""Edits of which fewer are tried without a look at what has a part in what."""
 _NUMBER = 1.15
 """Cost of an edit above which it is rather a wrong number that explains the program."""
 _SOLVED = 20_000_000
@@ -234,17 +231,14 @@ class LineSearch:
             every = [edit for edit in every if not self.evidence.spoils_a_helper(edit)]
             more = self._waits()
             dear = {edit: self.likely(edit) + more[edit.part] for edit in every}
-            idle: set[int] = set()
-            if not self.stand and len(every) > _LOOKED_THROUGH:
-                idle = beside_the_fault(self.asked, self.observed, self.work)
-            tried = self._in_turn(sorted(every, key=dear.__getitem__), idle)
+            tried = self._in_turn(sorted(every, key=dear.__getitem__))
             if sum(map(self.work.of, tried)) > limit:
                 self.ahead = self._ahead(tried, limit // _UNITS)
                 tried = [*dict.fromkeys([*self.ahead, *tried])]
             variants = Variants(self.trial, tried)
             for turn, edit in enumerate(tried):
                 farthest = best + (_DOUBTED if doubted else _TIED)
-                if found and (self.likely(edit) > farthest or id(edit.node) in idle):
+                if found and self.likely(edit) > farthest:
                     continue
                 self.work.done += self.work.of(edit)
                 if self.work.done > limit or (self.heavy and turn == _FIRST and not found):
@@ -531,24 +525,16 @@ class LineSearch:
         runs, whole = self.work.amounts, max(1, self.work.amounts[0])
         return {part: _DEAR * float(np.log10(max(1, run) / whole)) for part, run in runs.items()}
 
-    def _in_turn(self, ranked: list[ProgramEdit], idle: set[int]) -> list[ProgramEdit]:
-        """The likeliest first, and in turn with them those of suspected statements.
-
-        Args:
-            ranked: the edits.
-            idle: the nodes of which none is at fault alone.
-        """
+    def _in_turn(self, ranked: list[ProgramEdit]) -> list[ProgramEdit]:
+        """The likeliest first, and in turn with them those of suspected statements."""
         turn: dict[ProgramEdit, float] = {}
-        every = among = able = 0
+        every = among = 0
         for edit in ranked:
             every += self.work.of(edit)
             turn[edit] = every
             if id(edit.node) in self.suspected:
                 among += self.work.of(edit)
                 turn[edit] = min(every, _SUSPECTED * among)
-            if idle and id(edit.node) not in idle:
-                able += self.work.of(edit)
-                turn[edit] = min(turn[edit], _SUSPECTED * able)
         return sorted(ranked, key=lambda edit: turn[edit])
 
     def verdict(
