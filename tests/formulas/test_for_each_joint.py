@@ -312,8 +312,32 @@ def test_the_acceleration_of_a_slide(rate: str) -> None:
         ", that is the height of the tool, not x",
         " (of ours the sign is the other one)",
         ". This is the part of the first two links, that of the third comes on top.",
+        ", in millijoule",
+        " (in Newtonmillimeter)",
+        ", in newton millimetres",
     ],
 )
 def test_second_thoughts_behind_a_formula_are_heard(words: str) -> None:
     with pytest.raises(ExpressionError):
         _agrees("planar3r", "fk[0,3]", "x = l1*c1 + l2*c12 + l3*c123" + words)
+
+
+@pytest.mark.parametrize(
+    ("robot", "quantity", "text", "mended"),
+    [
+        ("single_link", "forward_dynamics[0]", "qdd = (tau - m*g*lc*cos(q))/I + m*lc^2", "(I + m*lc^2)"),
+        ("planar2r", "potential_energy", "V = m1*g*l1*s1 + m2*g*l1*s1 + l2*s12", "m2*g*(l1*s1 + l2*s12)"),
+        ("planar2r", "potential_energy", "V = m_1 g l_1 s_1 + m_2 g l_1 s_1 + l_2 s_{12}",
+         "m_2 g (l_1 s_1 + l_2 s_{12})"),
+    ],
+)  # fmt: skip
+def test_lost_parentheses_are_one_slip(robot: str, quantity: str, text: str, mended: str) -> None:
+    found = kl.diagnose(robot, quantity, text, samples=20)
+    assert found.causes[0].kinds == ("parentheses",)
+    assert mended in str(found)
+
+
+def test_of_one_factor_it_is_missing_in_the_other_term() -> None:
+    text = "M12 = I2 + m2*lc2^2 + l1*lc2*c2"
+    found = kl.diagnose("planar2r_rods", "mass_matrix[0,1]", text, samples=20)
+    assert found.causes[0].kinds == ("missing factor",)

@@ -368,6 +368,7 @@ def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
         line.edit(place, alone, (start, at + plus, ""), "extra term", 1.15, told, {"term": first})
         if plus:
             _plus_for_times(line, place, at)
+        _enclosed(line, place, at)
         return
     if isinstance(node.op, ast.Pow):
         base = left.value
@@ -423,8 +424,46 @@ def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
         line.edit(place, -right.value, span, "factor", _BEHIND_A_MINUS, told, told_of)
 
 
+_ENCLOSED = 1.2
+"""Cost of lost parentheses around the end of a term and the next one."""
 _BEHIND_A_MINUS = 1.25
 """Cost of a number that does not belong behind a minus: the 2 of ``-2*m2``."""
+
+
+def _enclosed(line: Line, place: Place, at: int) -> None:
+    """A term with what stands behind its product, or quotient, in parentheses that are lost.
+
+    ``a/(b + c)`` for ``a/b + c``, ``a*b*(c + d)`` for ``a*b*c + d``; of one factor alone it is
+    rather missing in the other term.
+    """
+    left, right = line.siblings[id(place)]
+    before, term = line.siblings[id(left)] if is_sum(left.node) else (None, left)
+    term_at = term.span[0]
+    back = right.value if line.source[at] == "+" else -right.value
+    inner: float | Array = 1.0
+    while is_product(term.node):
+        front, last = line.siblings[id(term)]
+        quotient = isinstance(term.node.op, ast.Div)
+        if quotient and np.ndim(inner):
+            return  # ``a/b*c + d``
+        inner = inner * last.value
+        if quotient or is_product(front.node):
+            with np.errstate(all="ignore"):
+                value = front.value / (inner + back) if quotient else front.value * (inner + back)
+            gap = line.source[front.span[1] : last.span[0]]
+            cut = front.span[1] + gap.index("/" if quotient else "*") + 1
+            behind = f"({line.source[cut : place.span[1]].strip()})"
+            if before is not None:
+                taken = isinstance(left.node, ast.BinOp) and isinstance(left.node.op, ast.Sub)
+                value = before.value - value if taken else before.value + value
+            shown = {"old": line.source[term_at : place.span[1]]}
+            shown["new"] = line.source[term_at:cut] + behind
+            told = N_("{old} should be {new}")
+            span = (cut, place.span[1], behind)
+            line.edit(place, value, span, "parentheses", _ENCLOSED, told, shown)
+        if quotient:
+            return
+        term = front
 
 
 def _plus_for_times(line: Line, place: Place, at: int) -> None:

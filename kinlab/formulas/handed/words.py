@@ -92,6 +92,8 @@ _OTHERWISE = re.compile(
     r"|\b(?:kgf|kp|lbf?|pounds?|inch(?:es)?|ounces?|feet|pieds?|pouces?|libras?|pulgadas?|zoll|pfund)\b|\ben\s+(?:livres|pies)\b|g[·*]cm|\binstead\s+of\b|\banstatt\b|而不是"
     r"|\b(?:comes?|goes|added)\s+on\s+top\b|\bhold\s+on\b|\bsign\s+is\s+the\s+other\b"
     r"|,\s?not\s+[xyz]\b"
+    r"|\b(?:milli|centi|zenti|kilo|micro|mikro|mega)(?:joule|newton|watt)\w*"
+    r"|\bnewton[- ]?(?:milli|centi|zenti)met\w+"
     r"|\bcamera\b|\bleft[- ]handed\b|\blinkshändig\w*|左手(?:系|坐标)"
     r"|\b(?:senza|sans|utan|zonder|sin|sem|bez)\s+(?:\w+['’]?\s*){0,2}"
     r"(?:gravi|coriolis|pes|frott|attrit|masse?|termi)"
