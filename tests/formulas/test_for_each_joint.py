@@ -337,6 +337,12 @@ def test_lost_parentheses_are_one_slip(robot: str, quantity: str, text: str, men
     assert mended in str(found)
 
 
+def test_what_stands_in_parentheses_already_is_in_no_others() -> None:
+    text = "V = (m1*g*l1*s1 + m2*g*l1*s1) + l2*s12"
+    found = kl.diagnose("planar2r", "potential_energy", text, samples=20)
+    assert found.causes[0].kinds == ("missing factor", "missing factor")
+
+
 def test_of_one_factor_it_is_missing_in_the_other_term() -> None:
     text = "M12 = I2 + m2*lc2^2 + l1*lc2*c2"
     found = kl.diagnose("planar2r_rods", "mass_matrix[0,1]", text, samples=20)

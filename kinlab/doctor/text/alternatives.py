@@ -28,6 +28,7 @@ from kinlab.doctor.text.line import (
 from kinlab.doctor.text.meanings import CLOSE
 from kinlab.doctor.text.throughout import NUMBERS, alike, throughout
 from kinlab.formulas import tree
+from kinlab.formulas.signs.brackets import closes
 from kinlab.formulas.text import canonical, words_in
 from kinlab.formulas.tree import Node
 from kinlab.host.language import N_
@@ -440,19 +441,21 @@ def _enclosed(line: Line, place: Place, at: int) -> None:
     before, term = line.siblings[id(left)] if is_sum(left.node) else (None, left)
     term_at = term.span[0]
     back = right.value if line.source[at] == "+" else -right.value
-    inner: float | Array = 1.0
+    inner: Array | None = None
     while is_product(term.node):
         front, last = line.siblings[id(term)]
         quotient = isinstance(term.node.op, ast.Div)
-        if quotient and np.ndim(inner):
+        if quotient and inner is not None:
             return  # ``a/b*c + d``
-        inner = inner * last.value
+        inner = last.value if inner is None else inner * last.value
         if quotient or is_product(front.node):
             with np.errstate(all="ignore"):
                 value = front.value / (inner + back) if quotient else front.value * (inner + back)
             gap = line.source[front.span[1] : last.span[0]]
             cut = front.span[1] + gap.index("/" if quotient else "*") + 1
             behind = f"({line.source[cut : place.span[1]].strip()})"
+            if closes(behind) < len(behind) - 1:
+                return  # it stands in parentheses that end here
             if before is not None:
                 taken = isinstance(left.node, ast.BinOp) and isinstance(left.node.op, ast.Sub)
                 value = before.value - value if taken else before.value + value

@@ -122,10 +122,10 @@ def _coefficients_exchanged(
         fronts = [x for x in heads if isinstance(x, ast.BinOp) and isinstance(x.op, SUMS)]
         if len(fronts) < 2:
             continue
-        texts = [text_of(x) for x in fronts]
+        texts = [ast.unparse(x) for x in fronts]
         if texts[0] != texts[1] and all(observed.shape(x) == () for x in fronts):
-            new = _Swapped({texts[0]: fronts[1], texts[1]: fronts[0]}).visit(copied(value))
-            yield here.within(here.node, "value", new, "names exchanged", _FRONTS)
+            both = _Swapped(dict[str, ast.expr](zip(texts, reversed(fronts), strict=True)))
+            yield here.within(here.node, "value", both.of(value), "names exchanged", _FRONTS)
 
 
 def of_terms(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
@@ -304,15 +304,7 @@ class Renamed(ast.NodeTransformer):
     visit_Attribute = visit_Subscript = _piece
 
 
-class _Swapped(ast.NodeTransformer):
-    """Other sums for sums, by what they are as text."""
+class _Swapped(Renamed):
+    """Other sums for sums, too."""
 
-    def __init__(self, others: dict[str, ast.expr]) -> None:
-        self.others = others
-
-    def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
-        other = self.others.get(text_of(node))
-        if other is not None:
-            return copied(other)
-        self.generic_visit(node)
-        return node
+    visit_BinOp = Renamed._piece

@@ -110,15 +110,16 @@ def arm_apart(
     turned = twisted_by(table, found)
     cells = _cells(table, float(np.linalg.norm(robot.model.gravity.linear)))
     far = _far_at_home(table, cells)
-    cells += _at_home(table, far)
+    cells += [_at_home(x, k) for k, x in far.items()]
     every = (node for tree in trial.trees for node in nodes(tree) if isinstance(node, ast.UnaryOp))
     negative = {id(node.operand) for node in every if isinstance(node.op, ast.USub)}
     names = {name: k for k, name in enumerate(trial.program.space)}
     unasked = frozenset[str]() if masses else frozenset(("mass", "moment", "centre"))
     labels = Labels(trial, table.n)
     rotors = np.array([link.armature for link in table.links])
-    given = table.n, cells, labels, found, negative, _summed(trial), names, unasked, rotors
-    reader = _Reader(*given)
+    reader = _Reader(
+        table.n, cells, labels, found, negative, _summed(trial), names, unasked, rotors
+    )
     items = sorted(reader.items, key=lambda item: len(item.options))
     ways = [*islice(_ways(items, frozenset()), _WAYS + 1)]
     if not ways:
@@ -128,7 +129,8 @@ def arm_apart(
     carried |= {cells[k].which for _one, k in ways[0]}
     back = _opposite(table, carried)
     other = _apart(table, carried | {*back.values()}, reader.tied | back, turned, reader.odd)
-    new = _cells(other, 0.0) + _at_home(other, far)
+    points = home_of(other)
+    new = _cells(other, 0.0) + [_at_home(float(points[k]), k) for k in far]
     puts = [
         [
             one.times(new[k].value / cells[k].value)
@@ -578,19 +580,21 @@ def home_of(table: DHTable) -> Array:
     return points
 
 
-def _far_at_home(table: DHTable, cells: Sequence[_Cell]) -> list[int]:
-    """Which of these coordinates are none of the table's lengths: the points of screw axes."""
-    lengths = np.array([0.0, *(one.value for one in cells if one.kind == "length")])
-    far: dict[float, int] = {}
-    for k, x in enumerate(np.abs(home_of(table)).tolist()):
-        if not _close(np.abs(lengths), x).any() and not any(_close(np.array([*far]), x)):
-            far[x] = k
-    return [*far.values()]
+def _far_at_home(table: DHTable, cells: Sequence[_Cell]) -> dict[int, float]:
+    """Those of these coordinates, by their places, that are none of the table's lengths.
+
+    The points of screw axes have them.
+    """
+    lengths = [0.0, *(one.value for one in cells if one.kind == "length")]
+    far: dict[int, float] = {}
+    for k, x in enumerate(home_of(table).tolist()):
+        if not _close(np.array([*lengths, *far.values()]), x).any():
+            far[k] = x
+    return far
 
 
-def _at_home(table: DHTable, which: Sequence[int]) -> list[_Cell]:
-    points = home_of(table)
-    return [_Cell("length", ("home", k), (), float(points[k])) for k in which]
+def _at_home(value: float, place: int) -> _Cell:
+    return _Cell("length", ("home", place), (), value)
 
 
 def _strange(values: Iterable[float]) -> list[float]:

@@ -136,7 +136,7 @@ def single(search: LineSearch) -> list[ProgramRepair]:
 
 
 def _without_right_ones(search: LineSearch) -> LineSearch:
-    """The search without the edits that are right alone: for two in place of one."""
+    """The search without the edits that are right alone: for two in place of one, no more."""
     other = copy.copy(search)
     other.wide = False
     right = search.asked.right
