@@ -188,9 +188,9 @@ _NO_WORDS = re.compile(
 _SMALL_WORDS = (
     r"\b(?:the|of|from|for|is|are|in|by|with|and|as|see|to|only|without|der|die|das|ist|sind|von|vom|aus"
     r"|im|mit|und|nur|ohne|siehe|la|le|les|el|du|de|des|del|della|est|es)\b"
-    r"|(?<=\w)['’]s\b|:\s"
+    r"|(?<=\w)['’]s\b"
 )
-"""Words, and signs, that no formula has."""
+"""Words that no formula has."""
 
 
 def without_remark_behind(text: str, place: str) -> str:
