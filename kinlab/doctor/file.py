@@ -585,14 +585,18 @@ def _answers(
 ) -> Answers:
     """The case, the engine's answers, every place there is, and the formulas with their values.
 
-    Of a wrench the parts that no formula names are zero, but for those of ``forces``.
+    Of a wrench the parts that no formula names are zero, but for those of ``forces``; static
+    torques that name no force are of all of them.
     """
     case, engine = prepare(robot, plain, (), samples, seed)
     if case.quantity.read is not None:
         joints = joint_values(case, formulas, titles, file.path)
         return case, engine, list(joints), formulas, joints
     if "wrench" in case.arguments:
-        case = named_alone(case, _named(formulas).union(forces))
+        named = _named(formulas)
+        static = plain.startswith("statics")  # a torque of nothing else
+        of_all = WRENCH if static and named.isdisjoint(WRENCH[:3]) else ()
+        case = named_alone(case, named.union(forces, of_all))
         engine = case.answer(())
     shape = engine.shape[1:]
     labels = [label_of(plain, k) for k in np.ndindex(shape)]

@@ -130,7 +130,9 @@ def plain_formula(text: str, place: str = "expression", writing: Hand | None = N
 _LAMBDA = re.compile(r"(?<![\w.])lambda(?!\w)")
 """A name that Python has a use for."""
 
-_OF_ONE_LETTER = r"sin|cos|tan|sqrt|lc[₀-₉]+|[^\W\d_][\u0307\u0308]?(?:_?\d+|[₀-₉]+)?"
+_OF_ONE_LETTER = (
+    r"sin|cos|tan|sqrt|lc[₀-₉]+|[FM][xyz](?![^\W\d_])|[^\W\d_][\u0307\u0308]?(?:_?\d+|[₀-₉]+)?"
+)
 _OF_LETTERS = (
     rf"[csCS]\d+(?=(?:[csCS]\d+)+(?!\w))|(?:(?:{_MODULES})\.)?[^\W\d][^\W⁰¹²³⁴-⁹½]*[\u0307\u0308]?[^\W⁰¹²³⁴-⁹½]*"
     r"(?:\(\s*\d+\s*\)|\[\s*\d+\s*\])?['′″]*"
@@ -1002,7 +1004,7 @@ def entry_name(text: str, place: str = "expression", writing: Hand | None = None
         return typed  # a quantity by its own name
     if is_latex(typed) or not typed.isascii():
         typed = re.sub(r"(?<=\d)\s*,\s*(?=\d\s*[,}])", "", typed)
-        name = latex.expression(ascii_text(typed, place, as_latex=True), place)
+        name = latex.expression(ascii_text(with_dots(typed), place, as_latex=True), place)
     else:
         name = re.sub(r"\(\s*(\d)\s*,\s*(\d)\s*\)$", r"\1\2", typed)
         name = _without_indices(name, place, writing or hand([]))

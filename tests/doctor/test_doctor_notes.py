@@ -164,7 +164,6 @@ _WITHOUT = [
     ("scara", "statics[0]", f"tau1 = -{_X} + {_Y}", "nz"),
     ("scara", "statics[2]", "tau3 = -Fz", ""),
     ("scara", "statics[3]", "tau4 = -Mz", ""),
-    ("scara", "statics[3]", "tau4 = 0", "nz"),
     ("planar2r", "statics_tool[1]", "tau2 = l2*Fy", "nz"),
     ("planar2r", "inverse_dynamics_loaded[1]", f"tau2 = {_MOVING}", "fx, fy, nz"),
     ("planar2r", "tau2", f"tau2 = {_MOVING} - l2*s12*Fx + l2*c12*Fy", "nz"),
@@ -181,6 +180,25 @@ def test_a_force_that_its_joint_feels_and_no_line_has_is_said(
     assert found.agrees or found.causes
     said = [remark for remark in found.remarks if "as if there were none" in remark]
     assert said == ([f"it has no {forces} of the tool: as if there were none"] if forces else [])
+
+
+@pytest.mark.parametrize(
+    ("robot", "quantity", "text", "right"),
+    [
+        ("planar2r", "statics[0]", "tau1 = 0", False),
+        ("planar2r", "statics[1]", "tau2 = nz", False),
+        ("scara", "statics[3]", "tau4 = 0", False),
+        ("scara", "statics[3]", "tau4 = -nz", True),
+    ],
+)
+def test_a_static_torque_that_names_no_force_is_of_all_that_its_joint_feels(
+    robot: str, quantity: str, text: str, right: bool
+) -> None:
+    found = kl.diagnose(robot, quantity, text)
+    assert found.agrees == right
+    assert not any("as if there were none" in remark for remark in found.remarks)
+    put = [new for cause in found.causes for new in cause.corrected.values()]
+    assert not any(new.startswith("0") for new in put)
 
 
 def test_a_torque_of_a_motion_with_a_force_at_the_tool() -> None:

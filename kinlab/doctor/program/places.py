@@ -210,8 +210,12 @@ def is_nothing(node: ast.AST) -> bool:
 
 
 def row_of(edit: ProgramEdit) -> int:
-    """The line in which the piece stands, of a sum of several lines: its operator's."""
+    """The line in which the piece stands; of several lines the operator's, or the first entry's
+    that is another."""
     node = edit.node
+    if isinstance(node, ast.List | ast.Tuple) and isinstance(new := edit.changes[0].new, list):
+        others = (x for x, y in zip(node.elts, new, strict=False) if x is not y)
+        return int(next(others, node).lineno)
     if isinstance(node, ast.BinOp):
         change = edit.changes[0]
         if change.field == "op" or change.new is node.left:

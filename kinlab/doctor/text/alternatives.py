@@ -123,6 +123,8 @@ def _name(line: Line, place: Place, name: str) -> None:
         return
     if meant.op != "sym":
         return
+    if name in line.text.symbols:
+        _rate_alone(line, place, line.meaning(name))
     joint = _MOTION.fullmatch(str(meant.value))
     if joint:
         head, index = joint.group(1), int(joint.group(2))
@@ -159,6 +161,16 @@ def _name(line: Line, place: Place, name: str) -> None:
             more, less = f"({name} + {word})", f"({name} - {word})"
             line.instead(place, more, place.value + value, "missing term", 1.5)
             line.instead(place, less, place.value - value, "missing term", 1.7)
+
+
+def _rate_alone(line: Line, place: Place, meant: Node) -> None:
+    """A joint's rate alone, for the writer's own name of a link's: ``qd1`` for ``w12``."""
+    rates = [_MOTION.fullmatch(name) for name in tree.names(meant)]
+    heads = {found.group(1) for found in rates if found} & {"qd", "qdd"}
+    if len(rates) < 2 or None in rates or len(heads) != 1 or meant.op != "add":
+        return
+    for i in range(1, line.names.n + 1):
+        _node(line, place, tree.sym(f"{min(heads)}{i}"), "index", 1.2)
 
 
 def _letters(name: str) -> str:

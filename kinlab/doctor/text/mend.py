@@ -319,6 +319,9 @@ def _nested(source: str, changes: Sequence[Change]) -> list[Change]:
     return [*changes]
 
 
+_NOUGHT = r"^\s*0(?:\.0*)?(?![\w.])\s*"
+
+
 def rewritten(source: str, changes: tuple[Change, ...]) -> str | None:
     """The text with the changes in place; None where it is no formula any more."""
     text = source
@@ -329,6 +332,7 @@ def rewritten(source: str, changes: tuple[Change, ...]) -> str | None:
         text = before + new + behind
     if any(change.new.startswith("-") for change in changes):
         text = _signs_in_front(text)
+    text = re.sub(_NOUGHT, "", text) if re.fullmatch(_NOUGHT, source) else text
     text = re.sub(r"^\s*\+\s*", "", text.strip())
     text = re.sub(r"\(\s*\+\s*", "(", text)
     text = re.sub(r"(^|\()\s*-\s+", r"\1-", re.sub(r"  +", " ", text))

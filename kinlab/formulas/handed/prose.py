@@ -170,8 +170,9 @@ def doubtful(text: str, entry: str) -> list[tuple[str, str]]:
     """
     found = [("", clause) for clause in _shares(text)]
     for prose, typeset in _proses(text):
-        front, _behind = _cut(_FRAME.sub(" ", prose))
+        front, behind = _cut(_FRAME.sub(" ", prose))
         found += _of(front, entry, typeset) + _parts(front, entry)
+        found += _of_names(behind, typeset, text)
         frames = () if "tool" in entry else (_OTHER_FRAME,)
         for kind in (_UP_TO, _ELSEWHERE, _SCALED, *frames):
             found += [(one[0], around(prose, *one.span())) for one in kind.finditer(prose)]
@@ -186,12 +187,17 @@ def explained_by(text: str) -> str:
         _front, behind = _cut(prose)
         if behind:
             found += shares
-            behind = _INERTIA.sub(" ", behind)
-            found += [one for one in _of(behind, BEHIND, typeset) if not _used(one[0], text)]
+            found += _of_names(behind, typeset, text)
             if _ANGLE.search(behind) and _LINK.search(behind) and not _JOINT.search(behind):
                 found.append(("", behind.strip()[:_MOST]))  # the angle of link 2 may be a sum
             found += [("", clause) for clause in _to_elsewhere(flat(behind))]
     return found[0][1] if found else ""
+
+
+def _of_names(behind: str, typeset: bool, text: str) -> list[tuple[str, str]]:
+    """Words behind ``where`` that are in no list, but for names of the formula."""
+    found = _of(_INERTIA.sub(" ", behind), BEHIND, typeset)
+    return [one for one in found if not _used(one[0], text)]
 
 
 def _to_elsewhere(text: str) -> list[str]:

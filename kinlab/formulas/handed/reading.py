@@ -22,6 +22,7 @@ from kinlab.formulas.signs.brackets import closes
 from kinlab.formulas.signs.dressed import undressed
 from kinlab.formulas.signs.general import for_each_joint
 from kinlab.formulas.signs.macros import written_out
+from kinlab.formulas.signs.printed import as_typed
 from kinlab.formulas.signs.remarks import without_numbers
 from kinlab.formulas.text import refuse_nested
 from kinlab.formulas.typed import without_gaps
@@ -118,6 +119,12 @@ _FOLLOWS = re.compile(
     r"\s*(?:(?<![<=>])=>|⇒|⟹)\s*|\s*(?:→|⟶|∴)\s*(?=\$?\\?[A-Za-zα-ωΑ-Ω][\w{},₁-₉]{0,12}\s*=)"
 )
 """What follows from what stands before is an equation of its own."""
+_AND_SO_ON = re.compile(
+    r"(?:\\[ ,;:!]|\\q?quad|[\s,;~]){0,6}"
+    r"(?:\\(?:text|mbox|textrm|mathrm)\s?\{\s*(?:usw|etc|u\.\s?s\.\s?w)\.?\s*\}|(?<=[\s,;])(?:usw|etc)\.)"
+    r"(?=[\s$.]*$)"
+)
+"""``usw.`` behind definitions."""
 _ON_A_LINE = re.compile(r"\n\s*(?=(?:with|mit)\s)")
 
 
@@ -142,7 +149,7 @@ def as_formula(
         ExpressionError: what can be read in two ways, or a clause that is not so.
     """
     refuse_nested(text, place)
-    text = without_prompts(without_gaps(text))
+    text = without_prompts(without_gaps(_AND_SO_ON.sub("", as_typed(text))))
     text = _BOLD.sub(r"\1", written_out(with_definitions(text), place))
     text = _GREEK_ANGLE.sub(r"\1(\2)", text) if "\\" not in text else text
     text = _ACCENTED.sub(lambda letter: unicodedata.normalize("NFC", letter[0]), text)

@@ -20,6 +20,7 @@ from kinlab.formulas.handed.prose import (
     outside_formulas,
 )
 from kinlab.formulas.handed.sentences import without_sentences
+from kinlab.formulas.handed.vocabulary import is_program
 from kinlab.formulas.signs.refusals import refused
 from kinlab.formulas.typed import begins_with, entry_name, of_one_name
 from kinlab.host.language import N_
@@ -185,6 +186,10 @@ _NO_WORDS = re.compile(
     r"[^\W\d_]\d|\d[^\W\d_]|[\u0370-\u03ff]|(?<![^\W\d_])(?:sin|cos|tan|sqrt|exp)"
 )
 """Names with numbers, Greek letters and functions."""
+_ROUNDED = re.compile(
+    r"rounded|gerundet|arrondie?s?|redondead[oa]s?|arrotondat[oiae]", re.IGNORECASE
+)
+"""What is said of numbers."""
 _SMALL_WORDS = (
     r"\b(?:the|of|from|for|is|are|in|by|with|and|as|see|to|only|without|der|die|das|ist|sind|von|vom|aus"
     r"|im|mit|und|nur|ohne|siehe|la|le|les|el|du|de|des|del|della|est|es)\b"
@@ -205,7 +210,9 @@ def without_remark_behind(text: str, place: str) -> str:
         inside = found[1]
         words = re.findall(r"[^\W\d_]{3,}", inside)
         small = words and re.search(_SMALL_WORDS, inside, re.IGNORECASE)
-        if not small or _NO_WORDS.search(inside) or not _PLAIN_WORDS.fullmatch(inside):
+        long = [word for word in words if len(word) > len("sin") and not is_program(word)]
+        told = small or len(long) > 1 or _ROUNDED.fullmatch(inside)
+        if not told or _NO_WORDS.search(inside) or not _PLAIN_WORDS.fullmatch(inside):
             continue  # (alpha beta gamma) may be a factor
         if _OTHERWISE.search(inside) or _MORE.search(inside):
             raise refused(place, _CHANGED, words=inside)

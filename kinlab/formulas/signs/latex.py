@@ -22,10 +22,10 @@ _WORD = (
     r"(?![A-Za-z])\*?\s*\{[A-Za-z0-9_ ]*\}"
 )
 _OWN = (
-    r"(?<![A-Za-z\\])(?:[xyz]t(?![A-Za-z])"
+    r"(?<![A-Za-z\\])(?:[xyz]t(?![A-Za-z])|[FM][xyz](?![A-Za-z\d])"
     r"|(?:Ia|I[xyz]{2}|c[xyz]|lc|d{0,2}th|d{1,2}q|qd{1,2})(?=\d))"
 )
-"""Names of an arm's own numbers, typed as they are: the tool's ``xt``, ``Izz4``, ``cx4``."""
+"""Names of an arm's own numbers, typed as they are: the tool's ``xt``, ``Fx``, ``Izz4``."""
 _TOKEN = re.compile(
     rf"{_WORD}|{_OWN}|\\[A-Za-z]+|\\.|\d+(?:(?:\.|\{{,\}})\d+)?|(?:sin|cos|tan|sqrt|atan2)(?![A-Za-z])"
     r"|[A-Za-z]|[-+*/^_{}()\[\]=,&|.~]|\s+",

@@ -17,6 +17,7 @@ from kinlab.doctor.bytecode.syntax import called, copied, factors, names, nodes,
 from kinlab.doctor.program.edits import exchanges
 from kinlab.doctor.program.edits.additions import as_a_term
 from kinlab.doctor.program.edits.blocks import of_blocks
+from kinlab.doctor.program.edits.chains import SUMS
 from kinlab.doctor.program.edits.composites import of_composites
 from kinlab.doctor.program.edits.elsewhere import Elsewhere
 from kinlab.doctor.program.edits.forgotten import (
@@ -300,6 +301,7 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Progra
     if isinstance(node, ast.BinOp):
         yield from of_operator(here, observed, index or whole)
         yield from exchanges.of_terms(here, observed)
+        yield from exchanges.of_the_row_above(here, scope) if isinstance(node.op, SUMS) else ()
         yield from of_links(here, observed) if isinstance(node.op, ast.MatMult) else ()
     elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
         if not is_diagonal(here):

@@ -25,6 +25,8 @@ _TURNED = 1.02
 """Cost of a rotation in the plane the other way: ``c*x + s*y, -s*x + c*y``."""
 _MOST = 6
 """Names of one statement of which any two may be exchanged."""
+_OF_TWO = 1.12
+"""Cost of the other function and the other sign of one term."""
 _OF_TERMS, _TERMS = 1.16, 12
 """Cost of another term of a statement for one, and of how many such at most."""
 
@@ -81,6 +83,28 @@ def of_statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
     count = sum(isinstance(n, ast.Call) and called(n) in ANGLES for n in nodes(value))
     if turns and count > 1:
         yield here.within(here.node, "value", Turned().visit(copied(value)), "sin/cos", 1.1)
+
+
+def of_the_row_above(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """A term whose sine and sign are those of the row above: ``+ c1*b`` for ``- s1*b``.
+
+    Only the function in front of a term is exchanged.
+    """
+    node = here.node
+    for side, name in ((node.left, "left"), (node.right, "right")):
+        if isinstance(side, ast.BinOp) and isinstance(side.op, SUMS):
+            continue
+        front = side.operand if isinstance(side, ast.UnaryOp) else side
+        first, rest = chain(front, (ast.Mult, ast.Div))
+        turned = Turned(scope.shapes).visit(copied(first))
+        if isinstance(first, ast.Name | ast.Call) and ast.dump(turned) != ast.dump(first):
+            new = joined(turned, rest)
+            if name == "right":
+                other = ast.Sub() if isinstance(node.op, ast.Add) else ast.Add()
+                yield here.instead(ast.BinOp(node.left, other, new), "sin/cos", _OF_TWO)
+            else:
+                new = new if front is not side else ast.UnaryOp(ast.USub(), new)
+                yield here.instead(ast.BinOp(new, node.op, node.right), "sin/cos", _OF_TWO)
 
 
 def _rows_throughout(here: Here, value: ast.expr) -> Iterator[ProgramEdit]:

@@ -78,6 +78,8 @@ class Labels:
             self._put(value.operand, names, at)
         elif isinstance(value, ast.BinOp):  # of pi/2
             self._put(value.right, names, at)
+        elif isinstance(value, ast.Subscript):  # of ``a = [0, 0.4318][i]``
+            self._put(value.value, names, at)
         elif isinstance(value, ast.ListComp):  # the same of all links
             self._put(value.elt, names, at)
         elif isinstance(value, ast.Call):

@@ -28,6 +28,8 @@ _MADE = (
     *("eye", "identity", "full", "full_like"),
 )
 _ARRAYS = ("array", "asarray", "ascontiguousarray", "asanyarray")
+PARTS = ("real", "imag")
+"""Parts of complex numbers."""
 _AS_FLOAT = (float, np.float64, "float", "float64", "d", complex, "complex")
 
 
@@ -48,6 +50,12 @@ def with_lanes(space: dict[str, Any]) -> dict[str, Any]:
                   if hasattr(module, name)}  # fmt: skip
     new = {name: known[id(value)] for name, value in space.items() if id(value) in known}
     return {"float": _Float, "complex": _Complex, **new}
+
+
+def part_of(value: Any, name: str) -> Any:
+    """What ``value.imag`` is, of an array of numbers with lanes, too."""
+    laned = isinstance(value, np.ndarray) and value.dtype == object
+    return _NUMPY[name](value) if laned else getattr(value, name)
 
 
 class _Number(type):

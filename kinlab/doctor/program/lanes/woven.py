@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.doctor.bytecode.syntax import called, located, names, nodes, pieces, shallow
+from kinlab.doctor.program.lanes.functions import PARTS
 from kinlab.doctor.program.lanes.ways import WRITES, apart, function_of, loaded, may_run_apart
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import (
@@ -340,7 +341,7 @@ class Woven:
         """A function's definition, or the lines of a module, with the edits in it."""
         found = shallow(old)
         found.body = self._body(old.body)
-        return located(found)
+        return located(_with_parts(found))
 
     def _body(self, body: list[ast.stmt], alone: bool = False) -> list[ast.stmt]:
         """A block; whether it may run for some lanes alone."""
@@ -518,6 +519,24 @@ class Woven:
         if id(node) in self._above:
             return False
         return any(id(one) in self._holding for one in pieces(node))
+
+
+def _with_parts(node: Any, asked: bool = False) -> Any:
+    """``x.imag`` as a call: an array of numbers with lanes has only that of real ones."""
+    if not any(isinstance(one, ast.Attribute) and one.attr in PARTS for one in nodes(node)):
+        return node
+    other = shallow(node)
+    for name, value in ast.iter_fields(node):
+        if isinstance(value, list):
+            new = [_with_parts(x) if isinstance(x, ast.AST) else x for x in value]
+            setattr(other, name, new)
+        elif isinstance(value, ast.AST):
+            setattr(other, name, _with_parts(value, name == "func"))
+    if not isinstance(node, ast.Attribute) or node.attr not in PARTS or asked:
+        return other
+    if not isinstance(node.ctx, ast.Load):
+        return other
+    return ast.Call(ast.Name("_part", ast.Load()), [other.value, ast.Constant(node.attr)], [])
 
 
 def _is_asked(line: ast.Assign) -> bool:

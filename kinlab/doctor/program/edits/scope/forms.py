@@ -41,6 +41,10 @@ def summands(node: ast.expr) -> Iterator[ast.expr]:
         yield node
 
 
+_WAVES = {"s": "c", "c": "s", "S": "C", "C": "S"}
+"""How names of sines and cosines begin."""
+
+
 class Turned(ast.NodeTransformer):
     """Sine for cosine and cosine for sine.
 
@@ -62,7 +66,7 @@ class Turned(ast.NodeTransformer):
         return node
 
     def visit_Name(self, node: ast.Name) -> ast.Name:
-        other = {"s": "c", "c": "s"}.get(node.id[:1], "") + node.id[1:]
+        other = _WAVES.get(node.id[:1], "") + node.id[1:]
         both = node.id in self.known and other in self.known
         return ast.Name(other, node.ctx) if both else node
 

@@ -51,6 +51,18 @@ _FAMILIES = (
 """Functions of which one is written for another."""
 
 
+_BEYOND = {"sin": False, "cos": True}
+"""Functions that stand in ``1 - cos(t)`` and ``t - sin(t)``; whether 1 is what they are taken of.
+"""
+_RODRIGUES = 1.09
+"""Cost of what they are taken of, that is not there."""
+
+
+def _is_multiplied(here: Here) -> bool:
+    """Whether it is a factor."""
+    return isinstance(here.parent, ast.BinOp) and isinstance(here.parent.op, ast.Mult)
+
+
 def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
     node = here.node
     name = called(node)
@@ -69,6 +81,10 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
                 if text != argument:  # what is odd among others is rather meant as they are
                     odd = scope.taken[argument] == 1 < scope.taken[text] + 1
                     yield here.within(node.args, 0, angle, "argument", 1.08 if odd else 1.15)
+    if name in _BEYOND and len(node.args) == 1 and _is_multiplied(here):
+        begins = number(1) if _BEYOND[name] else node.args[0]
+        rest = ast.BinOp(begins, ast.Sub(), node)
+        yield here.instead(rest, "missing term", _RODRIGUES)  # of what a rotation is written with
     if isinstance(node.func, ast.Name) and name not in ANGLES:
         for other in _turned_alias(name, scope):
             yield here.within(node, "func", ast.Name(other, ast.Load()), "sin/cos", 1.0)

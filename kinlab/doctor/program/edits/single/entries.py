@@ -26,6 +26,8 @@ _THREE = 3
 """Indices of which any order is tried."""
 _COUNTED = 1.09
 """Cost of an index by which entries of other rows are taken."""
+_SET_ANEW, _WITH_A_NAME = 1.06, 1.14
+"""Cost of what a statement sets, for a part of something; of another vector with a name."""
 _BESIDE = 1.06
 """Cost of an index that another row has in the same line."""
 
@@ -45,6 +47,8 @@ def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
     keys = keys_of(node)
     if isinstance(node.slice, ast.Slice) and isinstance(node.ctx, ast.Load):
         yield here.instead(node.value, "index", 1.1)
+    if isinstance(node.ctx, ast.Load):
+        yield from _named(here, scope, observed)
     yield from of_keys(here, node, 1.1)
     yield from _other_slices(here)
     yield from _in_another_order(here)
@@ -78,6 +82,23 @@ def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
     if single and shape is not None and len(shape) == 2 and not isinstance(key, ast.Slice):
         column = ast.Tuple([ast.Slice(None, None, None), key], ast.Load())
         yield here.within(node, "slice", column, "transposed", 1.15)
+
+
+def _named(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
+    """A vector or a matrix that has a name, for a part of another: ``z`` for ``R[:, 2]``.
+
+    Soonest what the statement sets, which is then set anew from what it was.
+    """
+    shape = observed.shape(here.node)
+    if not shape or isinstance(here.parent, ast.Subscript | ast.Attribute):
+        return
+    line = statement_of(here.above)
+    targets = line.targets if isinstance(line, ast.Assign) else []
+    own = {one.id for one in targets if isinstance(one, ast.Name)}
+    for name, known in scope.shapes.items():
+        if known == shape and name not in scope.counters and name not in scope.unused:
+            cost = _SET_ANEW if name in own else _WITH_A_NAME
+            yield here.instead(ast.Name(name, ast.Load()), "name", cost)
 
 
 def _by_counter(

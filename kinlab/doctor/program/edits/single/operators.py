@@ -30,6 +30,10 @@ _SIDES = 1.04
 """Cost of a side for another in the law of cosines."""
 _TURNED = 1.01
 """Cost of parentheses behind a matrix: ``R.T @ (v + w)`` for ``R.T @ v + w``."""
+_COMMUTATOR = 1.1
+"""Cost of the second half of a commutator, or of a symmetric part, that is not there."""
+_UNTURNED = 1.09
+"""Cost of a vector that is turned too many."""
 _DIVIDED = 1.2
 """Cost of a quotient for a product, or a product for a quotient."""
 DIAGONALS = ("tril", "triu", "eye", "diag")
@@ -99,6 +103,8 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             alone = observed.shape(kept) == () and bool(left_out)
             undone = kept is right and _turns_back(left, right)
             cost = 1.02 if undone else cost + FLAT * alone
+            if kept is right and isinstance(op, ast.MatMult) and len(matrices[1] or ()) == 1:
+                cost = min(cost, _UNTURNED)
             typed = kept is right and getattr(left, "value", 0) in _HALVES
             typed = typed or (kept is left and isinstance(op, ast.Div) and _is_two(right))
             yield here.instead(kept, "extra factor", _TYPED if typed else cost)
@@ -111,6 +117,11 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             if twice is not None:  # A + A.T for 2*A
                 both = ast.BinOp(twice, ast.Add(), ast.Attribute(twice, "T", ast.Load()))
                 yield here.instead(both, "transposed", 1.0)
+            if len(sizes) == _PAIR and sizes[0] == sizes[1] and _is_all(here):
+                back = ast.BinOp(right, op, left)  # A @ B - B @ A for A @ B
+                yield here.instead(ast.BinOp(node, ast.Sub(), back), "missing term", _COMMUTATOR)
+                across = ast.Attribute(node, "T", ast.Load())
+                yield here.instead(ast.BinOp(node, ast.Add(), across), "missing term", _COMMUTATOR)
             yield from _in_turn(here)
             if isinstance(left, ast.BinOp) and isinstance(left.op, ast.MatMult):
                 last = ast.BinOp(ast.BinOp(left.left, op, right), left.op, left.right)
@@ -160,6 +171,14 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             yield here.instead(ast.BinOp(left.left, left.op, last), "parentheses", 1.12)
     elif isinstance(op, ast.FloorDiv) and not index:
         yield here.within(node, "op", ast.Div(), "whole division", 0.97)
+
+
+def _is_all(here: Here) -> bool:
+    """Whether it is all that is set, or a term of that."""
+    outer = here.parent
+    if isinstance(outer, ast.BinOp) and isinstance(outer.op, ast.Add | ast.Sub):
+        return True
+    return isinstance(outer, ast.Assign | ast.AugAssign | ast.Return)
 
 
 def _is_cross(node: ast.AST) -> bool:

@@ -14,6 +14,8 @@ from kinlab.doctor.program.places import Here, ProgramEdit, follow, number
 
 _LONGEST = 6
 """Entries of a list of which any two may have been exchanged."""
+_SIDE_BY_SIDE = 1.06
+"""Cost of two transforms of a list for one another that stand side by side."""
 _PLACE = 3
 """Where the 1 stands in what a transform is multiplied with."""
 FLAT = 0.1
@@ -42,7 +44,10 @@ _HALVED = 1.04
 
 def of_sequence(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
     elements = here.node.elts
-    if any(isinstance(e, ast.Starred) for e in elements) or len(elements) > _LONGEST:
+    if any(isinstance(e, ast.Starred) for e in elements):
+        return
+    yield from _neighbours(here, observed)
+    if len(elements) > _LONGEST:
         return
     if isinstance(here.parent, ast.Subscript) and here.field == "slice":
         return
@@ -78,6 +83,18 @@ def of_sequence(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
     if len(elements) > _PAIR and named in ([(4, 4)] * len(elements), [(3, 3)] * len(elements)):
         base = ast.parse(f"np.eye({named[0][0]})", mode="eval").body
         yield here.within(here.node, "elts", [base, *elements[:-1]], "shifted", 1.1)
+
+
+def _neighbours(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
+    """Two transforms of a list for one another that stand side by side: of a long one, too."""
+    elements = here.node.elts
+    shapes = [observed.shape(one) for one in elements]
+    for k in range(len(elements) - 1):
+        square = shapes[k] if shapes[k] in ((3, 3), (4, 4)) else None
+        same = ast.dump(elements[k]) == ast.dump(elements[k + 1])
+        if square is not None and shapes[k + 1] == square and not same:
+            swapped = [*elements[:k], elements[k + 1], elements[k], *elements[k + 2 :]]
+            yield here.within(here.node, "elts", swapped, "order", _SIDE_BY_SIDE)
 
 
 def _like_another(here: Here, rows: Sequence[ast.expr]) -> Iterator[ProgramEdit]:
