@@ -6,7 +6,7 @@ Every program is right before the slip; what is said makes it right, and is what
 from __future__ import annotations
 
 import pytest
-from hand_programs import told_in_its_line
+from hand_programs import EXPONENTIALS, asked, told_in_its_line, with_slips
 
 STATICS = """
 import numpy as np
@@ -65,24 +65,6 @@ def f(q):
     return reduce(np.matmul, [rotz(q[0]), transx(0.45), rotz(q[1]), transx(0.35),
                               rotx(np.pi/2), rotz(q[2]), transx(0.3)])
 """
-EXPONENTIALS = """
-import numpy as np
-
-def exp6(screw, theta):
-    w, v = screw[:3], screw[3:]
-    W = np.array([[0, -w[2], w[1]], [w[2], 0, -w[0]], [-w[1], w[0], 0]])
-    G = np.eye(3)*theta + (1 - np.cos(theta))*W + (theta - np.sin(theta))*W @ W
-    T = np.eye(4)
-    T[:3, :3] = np.eye(3) + np.sin(theta)*W + (1 - np.cos(theta))*W @ W
-    T[:3, 3] = G @ v
-    return T
-
-HOME = np.array([[1, 0, 0, 0.9], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1.0]])
-S1, S2 = np.array([0, 0, 1, 0, 0, 0.0]), np.array([0, 0, 1, 0, -0.5, 0])
-
-def f(q):
-    return exp6(S1, q[0]) @ exp6(S2, q[1]) @ HOME
-"""
 POINTS = """
 from numpy import array, cos, sin
 
@@ -106,3 +88,120 @@ SLIPS = [
 @pytest.mark.parametrize(("robot", "quantity", "text", "right", "slip"), SLIPS)
 def test_what_stood_there_is_told(robot, quantity, text, right, slip, tmp_path) -> None:
     told_in_its_line(robot, quantity, text, right, slip, tmp_path / "hand.py")
+
+
+DEGREES = """
+import numpy as np
+DEG = np.pi/180
+TABLE = [(0, 0.412, 0, -90), (0, 0.154, 0, 90), (-90, 0, 0.0203, 0),
+         (0, 0, 0, -90), (0, 0, 0, 90), (0, 0.263, 0, 0)]
+
+def rot(axis, t):
+    R = np.eye(4)
+    i, j = {"x": (1, 2), "z": (0, 1)}[axis]
+    R[i, i] = R[j, j] = np.cos(t)
+    R[i, j], R[j, i] = -np.sin(t), np.sin(t)
+    return R
+
+def f(q):
+    T = np.eye(4)
+    for i in range(6):
+        th, d, a, al = TABLE[i]
+        th = th*DEG + (0 if i == 2 else q[i])
+        shift = np.eye(4)
+        shift[0, 3], shift[2, 3] = a, q[i] if i == 2 else d
+        T = T @ rot("z", th) @ shift @ rot("x", al*DEG)
+    return T
+"""
+
+
+def test_whole_degrees_that_are_given_on(tmp_path) -> None:
+    """Whole numbers are no counters where they are angles."""
+    told_in_its_line("stanford", "fk", DEGREES, '"x", al*DEG', '"x", al', tmp_path / "hand.py")
+
+
+PSEUDO = """
+import numpy as np
+a, l = np.array([0.5, 0.4]), np.array([0.25, 0.2])
+m, I = np.array([2.0, 1.5]), np.array([0.0416666666666667, 0.02])
+Q = np.array([[0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 0, 0], [0, 0, 0, 0]])
+
+def pseudo(k):
+    c = np.array([l[k] - a[k], 0, 0])
+    J = np.zeros((4, 4))
+    J[:3, :3] = np.diag([0, 1, 0])*I[k] + m[k]*np.outer(c, c)
+    J[:3, 3] = J[3, :3] = m[k]*c
+    J[3, 3] = m[k]
+    return J
+
+def f(q):
+    T = [np.eye(4)]
+    for k in range(2):
+        c, s = np.cos(q[k]), np.sin(q[k])
+        T.append(T[k] @ np.array([[c, -s, 0, a[k]*c], [s, c, 0, a[k]*s],
+                                  [0, 0, 1, 0], [0, 0, 0, 1]]))
+    U = [[T[j] @ Q @ np.linalg.inv(T[j]) @ T[p + 1] for j in range(p + 1)] for p in range(2)]
+    M = np.zeros((2, 2))
+    for i in range(2):
+        for j in range(2):
+            for p in range(max(i, j), 2):
+                M[i, j] += np.trace(U[p][j] @ pseudo(p) @ U[p][i].T)
+    return M
+"""
+
+
+def test_second_moments_that_are_left_out(tmp_path) -> None:
+    """And a mass of another link."""
+    slips = [(" + m[k]*np.outer(c, c)", ""), ("J[3, 3] = m[k]", "J[3, 3] = m[0]")]
+    found, good = asked(
+        with_slips(PSEUDO, slips), "planar2r_rods", "mass_matrix", tmp_path / "hand.py"
+    )
+    assert good, found.sentence
+    assert "m[k]*np.outer(c, c)" in found.sentence
+
+
+ENERGY = """
+import numpy as np
+rows = [(0, 0), (0.45, 0), (0.35, np.pi/2)]
+bodies = [(3.0, (0.2, 0.02, -0.01), (0.02, 0.08, 0.07, 0, 0)),
+          (2.0, (0.15, -0.01, 0.03), (0.01, 0.04, 0.045, 0, 0)),
+          (1.2, (0.12, 0.03, 0.01), (0.004, 0.012, 0.014, 0.001, 0.0005))]
+Q = np.array([[0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 0, 0], [0, 0, 0, 0]])
+
+def pseudo(m, c, xx, yy, zz, xy, yz):
+    c = np.array(c)
+    J = np.zeros((4, 4))
+    J[:3, :3] = [[(yy + zz - xx)/2, -xy, 0],
+                 [-xy, (xx + zz - yy)/2, -yz],
+                 [0, -yz, (xx + yy - zz)/2]]
+    J[:3, :3] = J[:3, :3] + m*np.outer(c, c)
+    J[:3, 3] = J[3, :3] = m*c
+    J[3, 3] = m
+    return J
+
+def link(row, t):
+    a, al = row
+    c, s, ca, sa = np.cos(t), np.sin(t), np.cos(al), np.sin(al)
+    return np.array([[c, -s, 0, a], [s*ca, c*ca, -sa, 0], [s*sa, c*sa, ca, 0], [0, 0, 0, 1]])
+
+def f(q, qd):
+    T, Td, energy = np.eye(4), np.zeros((4, 4)), 0.0
+    for i, (m, c, I) in enumerate(bodies):
+        A = link(rows[i], q[i])
+        Td = Td @ A + T @ A @ Q*qd[i]
+        T = T @ A
+        energy += 0.5*np.trace(Td @ pseudo(m, c, *I) @ Td.T)
+    return energy
+"""
+
+
+def test_one_that_takes_most_of_what_is_wrong_away_comes_first(tmp_path) -> None:
+    """Of two slips, of which one is by far the larger; no two effects of an energy add up."""
+    slips = [
+        ("T @ A @ Q*qd[i]", "T @ Q @ A*qd[i]"),
+        ("(xx + zz - yy)/2, -yz", "(xx + zz - yy)/2, yz"),
+    ]
+    file = tmp_path / "hand.py"
+    found, good = asked(with_slips(ENERGY, slips), "spatial3r", "kinetic_energy", file)
+    assert good, found.sentence
+    assert len(found.causes[0].kinds) == 2

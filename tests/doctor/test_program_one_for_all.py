@@ -6,7 +6,7 @@ Every program is right before the slip; what is said makes it right, and is what
 from __future__ import annotations
 
 import pytest
-from hand_programs import asked, with_slips, written
+from hand_programs import EXPONENTIALS, asked, with_slips, written
 
 import kinlab as kl
 
@@ -442,24 +442,6 @@ def test_a_twist_in_degrees_that_nobody_turns_is_told(tmp_path) -> None:
     assert "ROWS[2][0], degrees are taken for radians: 90 should be 1.5708" in told
 
 
-EXPONENTIALS = """
-import numpy as np
-
-def exp6(screw, theta):
-    w, v = screw[:3], screw[3:]
-    W = np.array([[0, -w[2], w[1]], [w[2], 0, -w[0]], [-w[1], w[0], 0]])
-    G = np.eye(3)*theta + (1 - np.cos(theta))*W + (theta - np.sin(theta))*W @ W
-    T = np.eye(4)
-    T[:3, :3] = np.eye(3) + np.sin(theta)*W + (1 - np.cos(theta))*W @ W
-    T[:3, 3] = G @ v
-    return T
-
-HOME = np.array([[1, 0, 0, 0.9], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1.0]])
-S1, S2 = np.array([0, 0, 1, 0, 0, 0.0]), np.array([0, 0, 1, 0, -0.5, 0])
-
-def f(q):
-    return exp6(S1, q[0]) @ exp6(S2, q[1]) @ HOME
-"""
 TURNED = """
 import numpy as np
 

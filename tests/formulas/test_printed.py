@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 import kinlab as kl
+from kinlab.errors import ExpressionError
 from kinlab.formulas.signs.printed import as_typed
 
 PRETTY = (
@@ -86,3 +87,28 @@ def test_the_writer_s_name_of_a_sum_of_rates_for_one_of_them() -> None:
     found = kl.diagnose("planar3r", "inverse_dynamics[2]", text)
     assert found.causes[0].kinds == ("index",)
     assert "w12 should be dth1" in found.sentence
+
+
+@pytest.mark.parametrize(
+    "check", [", check: q1 = q2 = 0 gives 0.9", ". Checked with q1=q2=0: 0.9 m, ok"]
+)
+@pytest.mark.parametrize("sign", ["+", "-"])
+def test_what_a_formula_was_tried_at_is_none_of_its_conditions(check: str, sign: str) -> None:
+    text = f"px = l1*cos(q1) {sign} l2*cos(q1+q2){check}"
+    found = kl.diagnose("planar2r", "fk[0,3]", text)
+    assert found.agrees == (sign == "+")
+    assert any("was not read" in remark for remark in found.remarks)
+
+
+@pytest.mark.parametrize(
+    ("robot", "quantity", "text"),
+    [
+        ("planar2r", "fk[0,3]", "l1*cos(q1) + l2*cos(q1+q2). Checked only for q1 = 0"),
+        ("planar2r", "fk[0,3]", "l1*cos(q1) + l2*cos(q1+q2); q2 is not the relative angle"),
+        ("planar2r", "christoffel[0,1,1]", "-m2*l1*l2*sin(q2), of the second kind"),
+        ("scara", "mass_matrix[2,2]", "m3 + m4 + Ia3; the tool has not been added yet"),
+    ],
+)
+def test_what_denies_it_is_heard(robot: str, quantity: str, text: str) -> None:
+    with pytest.raises(ExpressionError):
+        kl.diagnose(robot, quantity, text)

@@ -26,6 +26,7 @@ from kinlab.formulas.signs.printed import as_typed
 from kinlab.formulas.signs.remarks import without_numbers
 from kinlab.formulas.text import refuse_nested
 from kinlab.formulas.typed import without_gaps
+from kinlab.host.language import _
 
 _ALONE = re.compile(
     r"(?:p_?)?[xyz]|[VUPTKL]|phi|det\w*|E_?[pk]|\w*energy|lagrangian|[\w,\[\]]*[\d\]]"
@@ -174,6 +175,7 @@ def as_formula(
     constant = _CONSTANT.search(text)
     if constant and not _MOVING.search(text[: constant.start()].partition("=")[2]):
         text = text[: constant.start()]
+    text, tried = _without_a_check(text)
     doubts = doubtful(text, entry)
     text, marks = without_marks(siciliano_s_letters(text))
     refuse_comments(text, place)
@@ -183,7 +185,32 @@ def as_formula(
     text = without_words(text, entry, place)
     text = plain_rates(text)
     text, said = without_constant(without_units(text, entry, place), entry)
-    return of_column(text, entry, place), "; ".join(filter(None, (numbered, marks, said))), doubts
+    return (
+        of_column(text, entry, place),
+        "; ".join(filter(None, (numbered, marks, said, tried))),
+        doubts,
+    )
+
+
+_CHECK = re.compile(
+    r"[,;.]\s{1,9}(?:checked|check|tested|test|verified|probe|kontrolle|contr[oô]le|verifica|验证|检验)\b"
+    r"[:\s]{1,9}(?:(?:with|at|for|in|mit|bei|für|pour|per|para)\s{1,9})?"
+    r"(?P<state>(?:q|θ|\\?theta|th)_?\{?\d?\}?\s{0,9}=[^\n]{0,80})$",
+    re.IGNORECASE,
+)
+_NO_CHECK = re.compile(r"\b(?:only|nur|just|where|else|other\w*|but)\b|[;&\\]", re.IGNORECASE)
+
+
+def _without_a_check(text: str) -> tuple[str, str]:
+    """The text without what its writer tried it at, and what is said of that.
+
+    ``..., check: q1 = q2 = 0 gives 0.9``
+    """
+    found = _CHECK.search(text)
+    if found is None or "=" not in text[: found.start()] or _NO_CHECK.search(found["state"]):
+        return text, ""
+    said = _("the check {words!r} was not read").format(words=found["state"].strip())
+    return text[: found.start()], said
 
 
 def _defined(text: str) -> str:

@@ -68,7 +68,7 @@ _OTHERWISE = re.compile(
     r"|(?:忽略|不计|不考虑|略去)[^，。,;；=]{0,8}(?:质量|重力|惯量|惯性|自重|动能|势能|科氏|哥氏|离心)"
     r"|\b(?:without|ohne|senza|sans|sin|sem)\s+(?:the\s+|die\s+|der\s+|les\s+|la\s+)?"
     r"(?:coriolis|[cz]entrifugal|gravit|schwerkraft|pesanteur)"
-    r"|\bnot\s+(?:yet\s+)?(?:been\s+)?(?:included|considered|contained)\b"
+    r"|\bnot\s+(?:yet\s+)?(?:been\s+)?(?:included|considered|contained|added)\b"
     r"|\bnicht\s+(?:enthalten|berücksichtigt)\b"
     r"|(?<!no )(?<!without )\b(?:friction|damping)\s+(?:torque|force|moment)\b(?!\s+is)"
     r"|\breib(?:ungs)?moment\b"
@@ -92,7 +92,8 @@ _OTHERWISE = re.compile(
     r"|\bkleine[nr]?\s+winkel|小角度|微小な?角"
     r"|\b(?:kgf|kp|lbf?|pounds?|inch(?:es)?|ounces?|feet|pieds?|pouces?|libras?|pulgadas?|zoll|pfund)\b|\ben\s+(?:livres|pies)\b|g[·*]cm|\binstead\s+of\b|\banstatt\b|而不是"
     r"|\b(?:comes?|goes|added)\s+on\s+top\b|\bhold\s+on\b|\bsign\s+is\s+the\s+other\b"
-    r"|,\s?not\s+[xyz]\b"
+    r"|,\s?not\s+[xyz]\b|\b(?:has|have)\s+to\s+take\b[^.;]{0,40}\binstead\b"
+    r"|\b(?:q|th|theta)_?\d\s+is\s+not\b"
     r"|\b(?:milli|centi|zenti|kilo|micro|mikro|mega)(?:joule|newton|watt)\w*"
     r"|\bnewton[- ]?(?:milli|centi|zenti)met\w+"
     r"|\bcamera\b|\bleft[- ]handed\b|\blinkshändig\w*|左手(?:系|坐标)"
@@ -145,7 +146,8 @@ _DENIED = re.compile(
 )
 """The same, in front of a formula alone."""
 _MORE = re.compile(
-    r"\b(?:plus|times|(?<!checked )(?<!verified )twice|multiplied|divided|except"
+    r"\b(?:(?<!translation )plus(?!\s+(?:the\s+)?(?:parallel[- ]axis|steiner))|times"
+    r"|(?<!checked )(?<!verified )twice|multiplied|divided|except"
     r"|(?<!no )(?<!hence the )(?<!therefore the )(?<!thus the )(?<!explains the )"
     r"minus(?!\s+signs?\s+(?:is|are|comes?|follows?|arises?|results?|stems?|must|has)\b)"
     r"|apart|without|zuzüglich|abzüglich|ohne|außer"
@@ -269,6 +271,14 @@ _SAYS = (
 )
 
 
+_SECOND_KIND = re.compile(
+    r"\b(?:second\s+kind|zweiter\s+art|deuxième\s+espèce|segunda\s+(?:especie|espécie)"
+    r"|seconda\s+specie)\b|第二类",
+    re.IGNORECASE,
+)
+"""Christoffel's symbols times the inverse of the metric."""
+
+
 def _of_another_quantity(text: str, entry: str) -> str:
     """Words right in front of a formula that say of it that it is another quantity."""
     head = re.split(r"[\d\[]", entry)[0]
@@ -277,6 +287,8 @@ def _of_another_quantity(text: str, entry: str) -> str:
     for noun in (*others.values(), _ENERGY):
         if found := re.search(_SAYS_BEHIND.format(noun=noun), behind, re.IGNORECASE):
             return found[0].strip(" .;。\n)")
+    if head == "christoffel" and (found := _SECOND_KIND.search(text)):
+        return found[0]
     if len(others) == len(_NOUN):
         return ""  # of what it is asked for nobody has a noun here
     front = _NAME_BEHIND.sub("", _FORMULA.split(text)[0]).rstrip("$ \\")

@@ -103,7 +103,9 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         yield from _matrices(here, scope, shape)
     row = len(shape) == 1 and isinstance(node, ast.Name) and scope.has_numpy
     multiplied = isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.Mult)
-    if multiplied and len(shape) == 1 and isinstance(node, ast.Name):
+    summed = isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.MatMult)
+    summed = summed and here.field == "right" and not scope.is_pose(node)
+    if (multiplied or summed) and len(shape) == 1 and isinstance(node, ast.Name):
         yield here.instead(ast.BinOp(node, ast.Pow(), number(2)), "power", 1.12)
     if row and not isinstance(parent, ast.Subscript | ast.BinOp | ast.Attribute):
         total = ast.Attribute(ast.Name("np", ast.Load()), "cumsum", ast.Load())

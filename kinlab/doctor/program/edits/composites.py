@@ -116,10 +116,12 @@ def _parallel_axes(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
 
 
 def _parallel_axes_of_tensors(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
-    """The same of a tensor, with a vector or its matrix: ``I + m*S @ S.T``."""
+    """The same of a tensor, with a vector or its matrix: ``I + m*S @ S.T``; of the matrix of
+    second moments ``m*np.outer(c, c)``."""
     node = here.node
+    targets = here.parent.targets if isinstance(here.parent, ast.Assign) else []
     inner = [x for x in nodes(node) if isinstance(x, ast.Name | ast.Attribute | ast.Subscript)]
-    if not any(_begins(one, _MOMENTS) for one in inner):
+    if not any(_begins(one, _MOMENTS) for one in (*inner, *targets)):
         return
     masses = [one for _text, one in scope.simple(()) if _begins(one, _MASSES)][:_FEW]
     arms = [one for _text, one in scope.simple(_VECTOR) if _begins(one, _ARMS)][:_FEW]
@@ -131,7 +133,8 @@ def _parallel_axes_of_tensors(here: Here, scope: Scope) -> Iterator[ProgramEdit]
     for one in arms if scope.has_numpy else ():
         text = text_of(one)
         squares = f"({text} @ {text}*np.eye(3) - np.outer({text}, {text}))"
-        added.append(ast.parse(squares, mode="eval").body)
+        for more in (squares, f"np.outer({text}, {text})"):
+            added.append(ast.parse(more, mode="eval").body)
     for mass in masses:
         for one in added:
             first = isinstance(one.op, ast.MatMult) if isinstance(one, ast.BinOp) else False
@@ -140,6 +143,9 @@ def _parallel_axes_of_tensors(here: Here, scope: Scope) -> Iterator[ProgramEdit]
                 times = ast.BinOp(ast.BinOp(mass, ast.Mult(), one.left), one.op, one.right)
             beside = {*names(times)} <= scope.names_in(statement_of(here.above))  # m*S stands there
             near = first and text_of(times.left) in scope.pieces_here(_TENSOR)
+            arm = one.args[0] if isinstance(one, ast.Call) else None  # np.outer(c, c) beside m*c
+            moment = None if arm is None else ast.BinOp(mass, ast.Mult(), arm)
+            near = near or (moment is not None and text_of(moment) in scope.pieces_here(_VECTOR))
             cost = _BESIDE if beside else _NEAR if near else 1.14
             yield here.instead(ast.BinOp(node, ast.Add(), times), "missing term", cost)
 

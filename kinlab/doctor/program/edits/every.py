@@ -34,7 +34,7 @@ from kinlab.doctor.program.edits.scope.forms import statement_of, summands
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.calls import of_call
 from kinlab.doctor.program.edits.single.comparisons import negated, of_comparison, of_comparisons
-from kinlab.doctor.program.edits.single.constants import of_constant, of_rods
+from kinlab.doctor.program.edits.single.constants import of_constant, of_degrees, of_rods
 from kinlab.doctor.program.edits.single.entries import is_joined, keys_of, of_keys, of_subscript
 from kinlab.doctor.program.edits.single.names import of_attribute, of_name
 from kinlab.doctor.program.edits.single.operators import is_diagonal, of_operator
@@ -348,6 +348,8 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Progra
             limits = isinstance(here.parent, ast.Compare) and not _equal(here.parent)
             for step in (1, -1):
                 yield here.instead(plus(node, step), "index", 1.25 if limits else 1.1)
+        if not index and isinstance(here.parent, ast.Call):
+            yield from of_degrees(here, scope, seen)
         return
     if isinstance(node, ast.Call | ast.Subscript):
         yield from with_slices(here, scope)

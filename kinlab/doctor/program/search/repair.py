@@ -139,6 +139,7 @@ class LineSearch:
         self.here: list[ProgramRepair] = []
         self.ahead: list[ProgramEdit] = []
         self.most, self.thorough, self.wide = _WORK, True, True
+        self.rows: frozenset[tuple[int, int]] = frozenset()
         self.trial, self.case = Trial(program), case
         self.asked = Asked(self.trial, case, wanted, allowed)
         states = [
@@ -226,8 +227,10 @@ class LineSearch:
         best, doubted = np.inf, False
         limit = _ALONE if self.thorough else self.most
         with quietly():
-            most = _WEIGHED if self.thorough else _WEIGHED // 3
+            most = _WEIGHED if self.thorough or self.rows else _WEIGHED // 3
             every = chosen(self.asked, self.observed, self.known, self.dimensions, below, most)
+            if self.rows:
+                every = [one for one in every if (one.part, row_of(one)) in self.rows]
             every = [edit for edit in every if not self.evidence.spoils_a_helper(edit)]
             more = self._waits()
             dear = {edit: self.likely(edit) + more[edit.part] for edit in every}

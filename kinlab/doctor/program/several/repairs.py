@@ -68,6 +68,8 @@ _ALONE, _IN_LANES, _WAYS = 3_000_000, 12_000_000, 2
 """Work for the last one beside them, run alone, and in lanes after that; of how many ways."""
 _BESIDE_TWO = 50_000_000
 """The same in lanes beside two edits, each of which has made a statement right."""
+_NEARER = 8.0
+"""How many times as much was wrong before an edit that is gone on from for that."""
 _TURNS = 3
 """Edits of one repair that are exchanged for likelier ones."""
 _RESTING = 2
@@ -237,6 +239,9 @@ class _Several:
             found = self._beside_a_right_function(search)
             if found:
                 return self.settled(search, found)
+        found = [] if search.stand else self._one_more(search, _nearest(search), _REACHED)[0]
+        if found:
+            return self.settled(search, found, 1)
         in_order = InOrder(search, known, _IN_ORDER if search.wide else 0)
         one_by_one = in_order.found()
         found = [] if one_by_one is None else self._fewer(search, [one_by_one])
@@ -377,6 +382,7 @@ class _Several:
                 here = _beside(search, way)
                 here.most = alone
                 here.in_lanes = min(_IN_LANES, beside_two) if len(way) < _DEEPEST else beside_two
+                here.in_lanes = max(here.in_lanes, alone + _IN_LANES if alone > _IN_LANES else 0)
                 found = here.singles()
                 done += min(here.work.done, _IN_LANES) // _WAYS
             if found:
@@ -402,10 +408,20 @@ class _Several:
         for two in sorted(combinations(own, 2), key=lambda two: not _of_one_line(*two)):
             rest = tuple(edit for edit in own if edit not in two)
             lanes = _BESIDE_TWO if _of_one_line(*two) else 0
-            better, _done = self._one_more(search, [rest], _ALONE, lanes)
+            better = self._in_their_line(search, rest, two[0]) if lanes else []
+            if not better:
+                better, _done = self._one_more(search, [rest], _ALONE, lanes)
             if better:
                 return better
         return found
+
+    @staticmethod
+    def _in_their_line(search: LineSearch, rest: Way, one: ProgramEdit) -> list[ProgramRepair]:
+        """The one edit in the line of another that does beside the rest."""
+        with changed(search.trial, rest):
+            here = _beside(search, rest)
+            here.rows, here.most = frozenset([(one.part, row_of(one))]), _REACHED
+            return here.singles()
 
     def _after(self, search: LineSearch, firsts: list[Way]) -> list[ProgramRepair]:
         """What is left once edits stand: of several ways the first beside which anything does."""
@@ -492,6 +508,18 @@ def _mistyped(search: LineSearch) -> list[Way]:
 
 def _of_one_line(one: ProgramEdit, other: ProgramEdit) -> bool:
     return DATA not in (one.part, other.part) and row_of(one) == row_of(other)
+
+
+def _nearest(search: LineSearch) -> list[Way]:
+    """The edits that take most of what is wrong away, far more than any by accident."""
+    wanted = search.asked.wanted[search.asked.first]
+    own = search.asked.values(search.asked.first)
+    if own is None:
+        return []
+    before = np.linalg.norm(own - wanted)
+    left = [(np.linalg.norm(values - wanted), edit) for edit, values in search.tried]
+    near = sorted((one for one in left if _NEARER * one[0] <= before), key=lambda one: one[0])
+    return [(edit,) for edit in _apart([edit for _left, edit in near])[:_WAYS]]
 
 
 def _apart(edits: list[ProgramEdit]) -> list[ProgramEdit]:

@@ -54,6 +54,8 @@ _FAMILIES = (
 _BEYOND = {"sin": False, "cos": True}
 """Functions that stand in ``1 - cos(t)`` and ``t - sin(t)``; whether 1 is what they are taken of.
 """
+_SQUARE = 1.1
+"""Cost of a square for what is always positive."""
 _RODRIGUES = 1.09
 """Cost of what they are taken of, that is not there."""
 
@@ -85,6 +87,9 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
         begins = number(1) if _BEYOND[name] else node.args[0]
         rest = ast.BinOp(begins, ast.Sub(), node)
         yield here.instead(rest, "missing term", _RODRIGUES)  # of what a rotation is written with
+    if name in ("abs", "fabs") and len(node.args) == 1:  # of a gear ratio
+        squared = ast.BinOp(node.args[0], ast.Pow(), number(2))
+        yield here.instead(squared, "power", _SQUARE)
     if isinstance(node.func, ast.Name) and name not in ANGLES:
         for other in _turned_alias(name, scope):
             yield here.within(node, "func", ast.Name(other, ast.Load()), "sin/cos", 1.0)

@@ -12,6 +12,7 @@ from kinlab.doctor.program.edits.numbers.data import is_number, measured
 from kinlab.doctor.program.edits.scope.functions import PI
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.whole import SIZES
+from kinlab.doctor.program.observed import Seen
 from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, number
 from kinlab.doctor.program.trial import FieldChange
 
@@ -68,6 +69,23 @@ def _in_radians(degrees: int, scope: Scope) -> ast.expr:
     return (
         above if share.denominator == 1 else ast.BinOp(above, ast.Div(), number(share.denominator))
     )
+
+
+def of_degrees(here: Here, scope: Scope, seen: Seen | None) -> Iterator[ProgramEdit]:
+    """What is given on was in whole degrees: in radians."""
+    values = [float(x) for x in seen.values] if seen is not None else []
+    if all(abs(x) < 2 * _QUARTER for x in values) or any(x % _QUARTER for x in values):
+        return
+    levels = ((name, scope.level_of(name)) for name, shape in scope.shapes.items() if shape == ())
+    own = [name for name, level in levels if level and math.isclose(level, math.pi / 180)]
+    if own:
+        turned: ast.expr = ast.BinOp(here.node, ast.Mult(), ast.Name(own[0], ast.Load()))
+    elif scope.has_numpy:
+        radians = ast.Attribute(ast.Name("np", ast.Load()), "radians", ast.Load())
+        turned = ast.Call(radians, [here.node], [])
+    else:
+        turned = ast.BinOp(here.node, ast.Mult(), number(math.pi / 180))
+    yield here.instead(turned, "degrees", _IN_DEGREES)
 
 
 def of_rods(here: Here) -> Iterator[ProgramEdit]:
