@@ -15,6 +15,7 @@ from kinlab.doctor.changes import Case, table_of
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
 from kinlab.model.dh import DHTable
+from kinlab.model.link import Convention
 from kinlab.symbolic import dynamics, fourier, kinematics
 from kinlab.symbolic.arm import SymbolicArm, arm
 from kinlab.symbolic.determinant import det_poly
@@ -93,6 +94,8 @@ SCARA they are few, of others too many to search for a slip in."""
 _KINEMATIC_JOINTS = 7
 _ROWS = 6
 """Rows of a Jacobian."""
+_AXES = 3
+"""Coordinates of a point's velocity."""
 _FACTORED = 20
 """Terms of one entry up to which its factors are looked for."""
 POINTS = 24
@@ -150,9 +153,43 @@ def _isotropy_conditions(a: SymbolicArm) -> Any:
     return [a.trig.reduce(poly) for poly in sums]
 
 
+def _centres_jacobians(a: SymbolicArm) -> Any:
+    return [kinematics.jacobian_at(a, c, i) for i, c in enumerate(dynamics.centres(a), 1)]
+
+
+def _of_links(a: SymbolicArm, points: Any, rows: int, times: int) -> Any:
+    """Velocities, or accelerations, of a point of each link in the axes of its frame.
+
+    Args:
+        a: the arm; None of one whose links' frames are not those of their joints.
+        points: of each link, in the base.
+        rows: 3 of the point's alone, 6 with those of the turning.
+        times: how often they are derived: 1 for accelerations.
+    """
+    turned_over = any(link.flip for link in a.table.links)
+    twisted = rows > _AXES or any(link.alpha for link in a.table.links)
+    if turned_over or (twisted and a.table.convention is not Convention.MODIFIED):
+        return None
+    speeds = [[a.trig.gens[s.name]] for s in a.qd]
+    found = []
+    for i, (point, frame) in enumerate(zip(points, kinematics.link_frames(a)[1:], strict=True), 1):
+        moved = kinematics.product(a, kinematics.jacobian_at(a, point, i)[:rows], speeds)
+        for _time in range(times):
+            moved = [[_rate(a, x)] for x in _column(moved)]
+        back = [[frame[c][r] for c in range(3)] for r in range(3)]
+        halves = (moved[k : k + 3] for k in range(0, rows, 3))
+        found.append([x for half in halves for x in _column(kinematics.product(a, back, half))])
+    return found
+
+
+def _origins(a: SymbolicArm) -> Any:
+    return [kinematics.column(frame, 3) for frame in kinematics.link_frames(a)[1:]]
+
+
 _KINEMATIC: dict[str, Callable[[SymbolicArm], Any]] = {
     "fk": kinematics.tool_frame,
     "dh_poses": lambda a: kinematics.link_frames(a)[1:],
+    "link_transforms": lambda a: [kinematics.link_step(a, i) for i in range(a.n)],
     "jacobian": _jacobian("base"),
     "jacobian_tool": _jacobian("tool"),
     "jacobian_spatial": _jacobian("spatial"),
@@ -166,11 +203,15 @@ _AT_REST: dict[str, Callable[[SymbolicArm], Any]] = {
     "gravity_torques": lambda a: _column(dynamics.gravity_column(a)),
     "potential_energy": dynamics.potential_poly,
     "com_positions": dynamics.centres,
+    "com_jacobians": _centres_jacobians,
 }
 _DYNAMIC: dict[str, Callable[[SymbolicArm], Any]] = {
     "mass_matrix": dynamics.mass_grid,
     "coriolis_matrix": dynamics.coriolis_grid,
     "coriolis_torques": _coriolis_torques,
+    "com_accelerations": lambda a: _of_links(a, dynamics.centres(a), 3, 1),
+    "link_velocities": lambda a: _of_links(a, _origins(a), 6, 0),
+    "link_accelerations": lambda a: _of_links(a, _origins(a), 6, 1),
     "jacobian_dot": lambda a: [[_rate(a, x) for x in row] for row in _jacobian("base")(a)],
     "inverse_dynamics": lambda a: _column(dynamics.torque_column(a)),
     "lagrange_torques": lambda a: _column(dynamics.torque_column(a)),

@@ -205,3 +205,116 @@ def test_one_that_takes_most_of_what_is_wrong_away_comes_first(tmp_path) -> None
     found, good = asked(with_slips(ENERGY, slips), "spatial3r", "kinetic_energy", file)
     assert good, found.sentence
     assert len(found.causes[0].kinds) == 2
+
+
+ALIASED = """
+import numpy as np
+rows = [(0.5, 2.0), (0.4, 1.5)]
+com = [0.25, 0.2]
+
+def f(q):
+    angle, o = 0.0, np.zeros(3)
+    points, centres, masses = [], [], []
+    for (a, m), c, t in zip(rows, com, q):
+        angle = angle + t
+        along = np.array([np.cos(angle), np.sin(angle), 0])
+        points.append(o.copy())
+        centres.append(o + c*along)
+        masses.append(m)
+        o += a*along
+    tau = np.zeros(2)
+    for k in range(2):
+        for i in range(k, 2):
+            tau[k] += masses[i]*9.81*(centres[i] - points[k])[0]
+    return tau
+"""
+STEPS = """
+import numpy as np
+m, l, c, I = [2.0, 1.5], 0.5, [0.25, 0.2], [0.0416666666666667, 0.02]
+
+def M(q):
+    h = m[1]*l*c[1]*np.cos(q[1])
+    d = I[1] + m[1]*c[1]**2
+    return np.array([[I[0] + m[0]*c[0]**2 + m[1]*l**2 + d + 2*h, d + h], [d + h, d]])
+
+def f(q, v):
+    dM = np.zeros((2, 2, 2))
+    for k in range(2):
+        z = np.array(q, dtype=complex)
+        z[k] += 1e-30j
+        dM[:, :, k] = M(z).imag/1e-30
+    return 0.5*(np.einsum("ijk,k->ij", dM, v) + np.einsum("ikj,k->ij", dM, v)
+                - np.einsum("kji,k->ij", dM, v))
+"""
+SUMS = """
+import numpy as np
+
+def f(q):
+    p = np.cumsum(q)
+    tail = lambda w: np.cumsum(w[::-1])[::-1]
+    L = np.array([0.5, 0.4, 0.25])
+    return np.array([-tail(L*np.sin(p)), tail(L*np.cos(p)), np.ones(3)])
+"""
+HEIGHT = """
+import numpy as np
+COLUMN_MM = 387
+
+def f(q):
+    t = q[0] + q[1]
+    H = np.eye(4)
+    p = t - q[3]
+    H[:2, :2] = [[np.cos(p), np.sin(p)], [np.sin(p), -np.cos(p)]]
+    H[2, 2] = -1
+    H[:2, 3] = [0.325*np.cos(q[0]) + 0.275*np.cos(t), 0.325*np.sin(q[0]) + 0.275*np.sin(t)]
+    H[2, 3] = COLUMN_MM/1000 - q[2]
+    return H
+"""
+PLANE = """
+import numpy as np
+
+def f(q, v):
+    e1, e2 = np.exp(1j*q[0]), np.exp(1j*(q[0] + q[1]))
+    z1, z2 = 0.5*e1, 0.5*e1 + 0.4*e2
+    d1, d2 = 0.5j*e1*v[0], 0.5j*e1*v[0] + 0.4j*e2*(v[0] + v[1])
+    T = 0.5*(2.0*abs(d1)**2 + 1.5*abs(d2)**2)
+    V = 9.81*(2.0*z1.imag + 1.5*z2.imag)
+    return T - V
+"""
+RATES = """
+import numpy as np
+L1, L2, L3 = 0.45, 0.35, 0.3
+
+def f(q, dq):
+    c1, s1, c12, s12 = np.cos(q[0]), np.sin(q[0]), np.cos(q[0] + q[1]), np.sin(q[0] + q[1])
+    c3, s3 = np.cos(q[2]), np.sin(q[2])
+    w1, w12, w3 = dq[0], dq[0] + dq[1], dq[2]
+    r = L2 + L3*c3
+    p2 = np.array([L1*c1, L1*s1, 0])
+    p3 = p2 + np.array([L2*c12, L2*s12, 0])
+    pe = p2 + np.array([r*c12, r*s12, L3*s3])
+    v2 = L1*w1*np.array([-s1, c1, 0])
+    v3 = v2 + L2*w12*np.array([-s12, c12, 0])
+    ve = v2 + np.array([-r*s12*w12 - L3*s3*w3*c12, r*c12*w12 - L3*s3*w3*s12, L3*c3*w3])
+    z, z3 = np.array([0, 0, 1.0]), np.array([s12, -c12, 0])
+    z3d = w12*np.array([c12, s12, 0])
+    Jd = np.zeros((6, 3))
+    Jd[:3, 0] = np.cross(z, ve)
+    Jd[:3, 1] = np.cross(z, ve - v2)
+    Jd[:3, 2] = np.cross(z3d, pe - p3) + np.cross(z3, ve - v3)
+    Jd[3:, 2] = z3d
+    return Jd
+"""
+MORE = [
+    ("planar2r_rods", "gravity_torques", ALIASED, "points.append(o.copy())", "points.append(o)"),
+    ("planar2r_rods", "coriolis_matrix", STEPS, "z[k] += 1e-30j", "z[1] += 1e-30j"),
+    ("planar3r", "planar_jacobian", SUMS, "np.cumsum(w[::-1])[::-1]", "np.cumsum(w)[::-1]"),
+    ("scara", "fk", HEIGHT, "COLUMN_MM/1000", "COLUMN_MM//1000"),
+    ("planar2r", "lagrangian", PLANE, "2.0*z1.imag + 1.5*z2.imag", "2.0*z1.real + 1.5*z2.real"),
+    ("spatial3r", "jacobian_dot", RATES, "np.cross(z3d, pe - p3) + np.cross(z3, ve - v3)",
+     "np.cross(z3, ve - v3)"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("robot", "quantity", "text", "right", "slip"), MORE)
+def test_what_is_put_or_kept_otherwise(robot, quantity, text, right, slip, tmp_path) -> None:
+    told_in_its_line(robot, quantity, text, right, slip, tmp_path / "hand.py")

@@ -105,6 +105,7 @@ KINDS: dict[str, str] = {
     N_("whole division"): N_("a division leaves the remainder out"),
     N_("missing statement"): N_("a line is missing"),
     N_("missing argument"): N_("an argument is missing"),
+    N_("aliased"): N_("an array is changed in place where a copy is meant"),
     N_("too deep"): N_("a line stands in a block and belongs behind it"),
     N_("not deep enough"): N_("a line stands behind a loop or condition and belongs in it"),
     N_("operator"): N_("a sum stands for a product, or a product for a sum"),

@@ -91,6 +91,7 @@ _WHAT = {
     "shifted": N_("the numbers stand one place on"),
     "rows swapped": N_("two rows are exchanged"),
     "columns swapped": N_("two columns are exchanged"),
+    "aliased": N_("the array is changed in place later; a copy is meant"),
     "whole division": N_("the division leaves the remainder out"),
     "too deep": N_("the line stands in the block before it, and belongs behind it"),
     "not deep enough": N_("the line stands behind the loop or the condition, and belongs in it"),

@@ -45,6 +45,7 @@ _ENDING = re.compile(rf"^(?:\d+[.,]\d+|[{LATIN}]*\d\w*|\w)[ ,.;:-]+(?=\S)")
 _FRAME = re.compile(
     r"\bpart \(?[a-h1-9]\b"
     r"|\b(?:base|world|inertial|fixed|reference)[ -](?:frame|system|coordinates?)\b"
+    r"|\bsi\s+(?:ha|ottiene|trova|ricava)\b"
     r"|\b(?:basis|welt|inertial)(?:koordinaten)?system\b|基坐标系|世界坐标系|固定坐标系",
     re.IGNORECASE,
 )
@@ -75,7 +76,8 @@ _ORDINAL = re.compile("第[一二三四1-9]轴")
 """A joint, where a number says which."""
 _MOST = 60
 _CONDITION = re.compile(
-    r"(?<![\w*/+-])(?:(?:theta|vartheta|θ|ϑ|th|q)[d']{0,2}[1-9₁-₉]?\s*:?=\s*(?:[-±]?\s*(?:\d|π|pi\b))"
+    r"(?<![\w*/+-])(?<!partial )(?<!partial)(?<!∂)"
+    r"(?:(?:theta|vartheta|θ|ϑ|th|q)[d']{0,2}[1-9₁-₉]?\s*:?=\s*(?:[-±]?\s*(?:\d|π|pi\b))"
     r"|[lmI]c?[1-9]\s*=\s*0(?![\w.])"
     r"|(?P<letter>[lLmI])[1-9]\s*=\s*(?P=letter)[1-9](?![\w*/+-]|\s*[*/^+-]))"
 )

@@ -22,6 +22,7 @@ from kinlab.formulas.signs.brackets import closes
 from kinlab.formulas.signs.dressed import undressed
 from kinlab.formulas.signs.general import for_each_joint
 from kinlab.formulas.signs.macros import written_out
+from kinlab.formulas.signs.packages import of_packages
 from kinlab.formulas.signs.printed import as_typed
 from kinlab.formulas.signs.remarks import without_numbers
 from kinlab.formulas.text import refuse_nested
@@ -120,12 +121,22 @@ _FOLLOWS = re.compile(
     r"\s*(?:(?<![<=>])=>|⇒|⟹)\s*|\s*(?:→|⟶|∴)\s*(?=\$?\\?[A-Za-zα-ωΑ-Ω][\w{},₁-₉]{0,12}\s*=)"
 )
 """What follows from what stands before is an equation of its own."""
+_HENCE = re.compile(
+    r"(?<=\S)\s{0,9}[.,;]?\s{1,9}(?:hence|so|thus|therefore|then|(?:it\s+follows|we\s+find)\s+that|we\s+get|donc|alors"
+    r"|also|daher|somit|folglich|damit|quindi|dunque|luego|entonces|por\s+tanto)\s{0,9}[,:]?\s{1,9}"
+    rf"(?={_NAMED})|(?<=\S)[,，。;；]?\s{{0,9}}(?:因此|所以|于是)[,，]?\s{{0,9}}(?={_NAMED})",
+    re.IGNORECASE,
+)
+"""What follows, behind what is explained: ``where y = ... . Hence U = ...``."""
 _AND_SO_ON = re.compile(
     r"(?:\\[ ,;:!]|\\q?quad|[\s,;~]){0,6}"
     r"(?:\\(?:text|mbox|textrm|mathrm)\s?\{\s*(?:usw|etc|u\.\s?s\.\s?w)\.?\s*\}|(?<=[\s,;])(?:usw|etc)\.)"
     r"(?=[\s$.]*$)"
 )
 """``usw.`` behind definitions."""
+_ELLIPSIS = re.compile(r"(?<=\$)\s*(?:\.{3}|…)(?=\s+[^\W\d_]{3})")
+"""Between definitions and words."""
+_EXPLAINED_BELOW = re.compile(rf"\n\s{{0,9}}(?:with|mit|wobei)\s+(?={_NAMED})")
 _ON_A_LINE = re.compile(r"\n\s*(?=(?:with|mit)\s)")
 
 
@@ -150,11 +161,12 @@ def as_formula(
         ExpressionError: what can be read in two ways, or a clause that is not so.
     """
     refuse_nested(text, place)
-    text = without_prompts(without_gaps(_AND_SO_ON.sub("", as_typed(text))))
+    text = of_packages(_AND_SO_ON.sub("", as_typed(text)))
+    text = _HENCE.sub("\n", without_prompts(without_gaps(text)))
     text = _BOLD.sub(r"\1", written_out(with_definitions(text), place))
     text = _GREEK_ANGLE.sub(r"\1(\2)", text) if "\\" not in text else text
     text = _ACCENTED.sub(lambda letter: unicodedata.normalize("NFC", letter[0]), text)
-    text = _FOLLOWS.sub("\n", _IN_WORDS.sub(r"\1", text))
+    text = _FOLLOWS.sub("\n", _IN_WORDS.sub(r"\1", _ELLIPSIS.sub(".", text)))
     text = for_each_joint(_in_english(with_units_inside(_STAR_SAID.sub("", text))))
     text = _ABBREVIATED.sub(_where, text)
     text = _defined(_DOLLARS.sub("$$", text))
@@ -165,7 +177,8 @@ def as_formula(
         text = without_clauses(text, place, holds)
     text = _GIVEN.sub("where", _COMMA.sub(r"\1.\2", _BRACED_COMMA.sub(".", text)))
     text = _TWICE.sub(lambda found: f"{found['name']}{found['again']}", text)
-    text = _ON_A_LINE.sub(" ", _REMARK.sub(r"\1: ", text))
+    text = _EXPLAINED_BELOW.sub("\nwhere ", _REMARK.sub(r"\1: ", text))
+    text = _ON_A_LINE.sub(" ", text)
     text = _PLACE_BELOW.sub(r"_{\1\2}", text)
     if entry.startswith("gravity_torques") and not MOVING.search(text):
         text = _STATIC_TORQUE.sub(_of_gravity, text)

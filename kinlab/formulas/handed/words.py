@@ -26,6 +26,9 @@ from kinlab.formulas.typed import begins_with, entry_name, of_one_name
 from kinlab.host.language import N_
 
 _HEAD = re.compile(r"^([A-Za-z][\w ]{0,20}?)\s*:(?![=:])\s*(?=\S)")
+_SPOKEN = re.compile(r"^(?P<words>[^=*/^+:\n\\$]{4,90}?)\s?[:：]\s+(?=\S)")
+_LONG_WORD = re.compile(r"[^\W\d_]{4,}")
+"""What a formula without a sign of equality begins with: ``x of the tool: l1*c1``."""
 _OTHERWISE = re.compile(
     r"竖直|铅垂|水平(?!面)|夹角|绝对|相对|量起|角度制|错|有误|应再|不对|不正确|不是|并非|不等于"
     r"|\b(?:measured|absolute[rn]?|relative(?!\s+(?:joint\s+)?angles?\b)"
@@ -93,7 +96,9 @@ _OTHERWISE = re.compile(
     r"|\b(?:kgf|kp|lbf?|pounds?|inch(?:es)?|ounces?|feet|pieds?|pouces?|libras?|pulgadas?|zoll|pfund)\b|\ben\s+(?:livres|pies)\b|g[·*]cm|\binstead\s+of\b|\banstatt\b|而不是"
     r"|\b(?:comes?|goes|added)\s+on\s+top\b|\bhold\s+on\b|\bsign\s+is\s+the\s+other\b"
     r"|,\s?not\s+[xyz]\b|\b(?:has|have)\s+to\s+take\b[^.;]{0,40}\binstead\b"
-    r"|\b(?:q|th|theta)_?\d\s+is\s+not\b"
+    r"|\b(?:q|th|theta)_?\d\s+is\s+not\b|\bsó\s+(?:é\s+)?v[aá]lid|\bbez\s+grawitac"
+    r"|\b(?:en|em|in|i)\s+(?:mil[ií]m[eè]?tr|millim[eè]tr|cent[ií]m[eè]?tr|centim[eè]tr)\w*"
+    r"|\bbeneden\s+positief|\bdu\s+double\s+de\b"
     r"|\b(?:milli|centi|zenti|kilo|micro|mikro|mega)(?:joule|newton|watt)\w*"
     r"|\bnewton[- ]?(?:milli|centi|zenti)met\w+"
     r"|\bcamera\b|\bleft[- ]handed\b|\blinkshändig\w*|左手(?:系|坐标)"
@@ -169,6 +174,9 @@ def without_words(text: str, entry: str, place: str) -> str:
         ExpressionError: words that may change what a name means.
     """
     _refuse_meanings(text, entry, place)
+    spoken = None if "=" in text else _SPOKEN.match(text)
+    if spoken and any(not is_program(one) for one in _LONG_WORD.findall(spoken["words"])):
+        text = text[spoken.end() :]
     found = _HEAD.match(text)
     if found and _is_name(found[1], entry) and "=" not in text:
         text = f"{found[1]} = {text[found.end() :]}"

@@ -13,6 +13,7 @@ module        what it holds
 ``letters``   Letters and signs of Unicode as plain text or LaTeX
 ``macros``    Commands that a writer has made: ``\\newcommand{\\q}{\\theta}``
 ``named``     What books call entries of quantities that have a long name: x_2, y_{c2}, J_v
+``packages``  What programs and packages print: ``\\pdv``, ``\\SI``, sympy's functions of time
 ``printed``   Exponents on the line above, rows of a matrix by lines alone, names in a scan
 ``refusals``  What is said of a formula that cannot be read, in the language of the reader
 ``remarks``   What stands beside a formula and says nothing of its value: tags, units, words, old

@@ -1,15 +1,31 @@
-"""What was printed or scanned: exponents on the line above, rows of a matrix by lines alone."""
+"""What was printed or scanned: exponents on the line above, rows of a matrix by lines alone.
+
+And decimal commas, where no number has a point.
+"""
 
 from __future__ import annotations
 
 import re
 import unicodedata
+from itertools import pairwise
 
 _RAISED = re.compile(r"[ \t]*\d(?:[ \t]|\d)*")
-_BASE = re.compile(r"[^\W_]|[)\]₀-₉]")
-_DRAWN = re.compile(r"\[([^\[\],;&=]*\n[^\[\],;&=]*)\]")
+_BASE = re.compile(r"[^\W_]|[)\]₀-₉⎠]")
+_DRAWN = re.compile(r"\[([^\[\],;&=\n]*(?:\n[^\[\],;&=\n]*){1,20})\]")
 _APART = re.compile(r"[ \t]{2,}")
 _SCANNED = re.compile(r"(?<![^\W_])([^\W\d_]|lc)((?: \d)+)(?![\d.,]|[ ]?[.,]\d)")
+_HIGH = str.maketrans("⎛⎞⎝⎠", "    ")
+_LOW = str.maketrans("⎛⎝⎞⎠", "(())")
+_ASKED = re.compile(r"^[ \t]*>>> ?(?:sp\.|sympy\.)?pprint\([^()\n]*\)[ \t]*\n")
+_WITH_COMMA = re.compile(
+    r"(?<![\w.,_{\[])(?<![ijk]=)(?<![ijk] = )(?<![^\W\d_]{3} )(\d+),(\d+)(?![\w.,]|[)\]}])"
+)
+_WITH_POINT = re.compile(r"\d\.\d|,\s+\d+,\d")
+"""What says that a comma may set two numbers apart."""
+_TABLE = re.compile(r"(?m)^[ \t]*\|(?P<name>[^|\n]+)\|(?P<value>[^|\n]+)\|[ \t]*$")
+_RULE = re.compile(r"[-: ]+")
+_TALL = re.compile(r"(?:^|\n)(?P<front>[^\n⎡]*)⎡(?P<rows>[^⎦⎡]*)⎦", re.DOTALL)
+_ROWS = re.compile(r"(?:^|\n)[ \t]*\([^()\n]*(?:\([^()\n]*\)[^()\n]*)*\)[ \t]*(?=\n|$)")
 _GLUED = re.compile(r"[^\W_]\d|\d[^\W\d_]|[^\W\d_]_")
 _FEWEST = 4
 """Names with digits apart, of which one reads a scan."""
@@ -21,7 +37,41 @@ def as_typed(text: str) -> str:
     Args:
         text: as handed in, with all its blanks.
     """
-    return _scanned(_DRAWN.sub(_with_signs, _on_one_line(text)))
+    text = _in_brackets(_of_table(text.replace("⟨", "[").replace("⟩", "]")))
+    text = _DRAWN.sub(_with_signs, _on_one_line(_ASKED.sub("", text)))
+    text = text if _WITH_POINT.search(text) else _WITH_COMMA.sub(r"\1.\2", text)
+    return _scanned(text)
+
+
+def _of_table(text: str) -> str:
+    """``M11 = ...`` of the rows of a table of Markdown's, of a name and what it is."""
+    if len(_TABLE.findall(text)) < len("ab"):
+        return text
+
+    def row(found: re.Match[str]) -> str:
+        name, value = found["name"].strip(), found["value"].strip()
+        if _RULE.fullmatch(value) or not re.search(r"\d", name):
+            return ""
+        return "\n".join(f"{one.strip()} = {value}" for one in name.split("="))
+
+    return re.sub(r"\n{2,}", "\n", _TABLE.sub(row, text)).strip()
+
+
+def _in_brackets(text: str) -> str:
+    """``[a, b; c, d]`` of a matrix drawn with tall brackets, or row by row in parentheses."""
+
+    def drawn(found: re.Match[str]) -> str:
+        lines = re.sub(r"[⎢⎥⎣⎤]", " ", found["rows"]).split("\n")
+        inside = _on_one_line("\n".join(line for line in lines if line.strip()))
+        return f"{found['front']}[{inside}\n]"
+
+    text = _TALL.sub(drawn, text)
+    rows = [*_ROWS.finditer(text)]
+    together = all(one.end() == other.start() for one, other in pairwise(rows))
+    if len(rows) < len("ab") or not together:
+        return text
+    inside = "\n".join(one[0].strip()[1:-1] for one in rows)
+    return f"{text[: rows[0].start()]} [{inside}\n]{text[rows[-1].end() :]}"
 
 
 def _on_one_line(text: str) -> str:
@@ -31,8 +81,9 @@ def _on_one_line(text: str) -> str:
     k = 0
     while k < len(lines):
         below = lines[k + 1] if k + 1 < len(lines) else ""
-        new = _with_raised(lines[k], below) if _RAISED.fullmatch(lines[k]) else None
-        found.append(lines[k] if new is None else new)
+        above = lines[k].translate(_HIGH)
+        new = _with_raised(above, below) if _RAISED.fullmatch(above) else None
+        found.append(lines[k] if new is None else new.translate(_LOW))
         k += 1 if new is None else 2
     return "\n".join(found)
 

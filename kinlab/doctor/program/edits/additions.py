@@ -93,6 +93,10 @@ _THRICE = 3
 """How often a name may stand in a sum of three equal links."""
 
 
+_HALF_SQUARED = 1.09
+"""Cost of half a length in a square, where it stands whole."""
+
+
 def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     """A sign, a transpose, a factor, a term more: where an expression stands for itself."""
     node, parent = here.node, here.parent
@@ -112,6 +116,10 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         unpacked = isinstance(parent, ast.Assign) and isinstance(parent.targets[0], ast.Tuple)
         cost = 1.14 if isinstance(parent, ast.Call) else 1.16 if unpacked else 1.1
         yield here.instead(ast.Call(total, [node], []), "function", cost)
+    squared = isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.Pow)
+    if squared and here.field == "left" and isinstance(node, ast.Name | ast.Attribute):
+        half = ast.BinOp(node, ast.Div(), number(2))
+        yield here.instead(half, "missing factor", _HALF_SQUARED)
     for term in _in_the_other_case(here) if zero else ():
         if scope.observed.shape(term) == ():
             yield here.instead(copied(term), "number", 1.06)

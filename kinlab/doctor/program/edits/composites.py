@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from functools import reduce
 from itertools import product
 
-from kinlab.doctor.bytecode.syntax import called, factors, names, nodes, text_of
+from kinlab.doctor.bytecode.syntax import called, copied, factors, names, nodes, text_of
 from kinlab.doctor.program.edits.chains import chain, joined
 from kinlab.doctor.program.edits.scope.forms import statement_of
 from kinlab.doctor.program.edits.scope.part import Scope
@@ -77,6 +77,7 @@ def of_composites(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdi
     if shape == _VECTOR and (term or (factor and here.field == "right")):
         yield from _cross_products(here, scope)
     if shape == _VECTOR:
+        yield from _of_the_product_rule(here, scope)
         yield from _of_turning(here, scope)
         if isinstance(parent, ast.Assign | ast.AugAssign | ast.Return):
             yield from _carried_on(here, scope)
@@ -310,6 +311,32 @@ def _cross_products(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
                 product = ast.Call(scope.cross, [rate, product], [])
                 new = ast.BinOp(here.node, ast.Add(), product)
                 yield here.instead(new, "missing term", cost + 0.05 * turn)
+
+
+def _of_the_product_rule(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """The other term of a rate of a cross product: ``z3d x (p - p3)`` beside ``z3 x (v - v3)``."""
+    node = here.node
+    if not scope.crosses(node):
+        return
+    factors_, known = node.args, [x for x, shape in scope.shapes.items() if shape == _VECTOR]
+    for own, other in (factors_, factors_[::-1]):
+        if not isinstance(own, ast.Name):
+            continue
+        others = [x for x in known if x != own.id and own.id in x.replace("d", "")]
+        others += [x for x in known if x != own.id and x in own.id.replace("d", "")]
+        points = {x.id for x in nodes(other) if isinstance(x, ast.Name)}
+        beside = {x: [y for y in known if y[1:] == x[1:] and y[0] != x[0]] for x in points}
+        for head in sorted({y[0] for some in beside.values() for y in some}):
+            put = {x: y for x, some in beside.items() for y in some if y[0] == head}
+            for rate in others if len(put) == len(points) else ():
+                turned = copied(other)
+                for one in nodes(turned):
+                    if isinstance(one, ast.Name):
+                        one.id = put.get(one.id, one.id)
+                given = [ast.Name(rate, ast.Load()), turned]
+                given = given if own is factors_[0] else given[::-1]
+                both = ast.BinOp(ast.Call(node.func, given, []), ast.Add(), node)
+                yield here.instead(both, "missing term", _OF_SUMMANDS)
 
 
 def _begins_turned(both: ast.BinOp) -> bool:

@@ -54,6 +54,8 @@ _ALONG = ("transpose", "moveaxis")
 """What is given numbers of axes."""
 _WRITTEN = 1.15
 """Cost of another index of where a value is written: slips are made rather where it is read."""
+_IN_EVERY_TURN = 1.08
+"""Cost of a counter for a number by which the same entry is set in every turn."""
 _COUNTED = 1.13
 """Cost of another counter where a value is written."""
 _GATHERED = 1.0
@@ -281,6 +283,12 @@ def _line(edit: ProgramEdit) -> int:
 # -------- Expressions
 
 
+def _counts_in(here: Here) -> bool:
+    """Whether a quotient without remainder counts something: ``range(n//2)``, ``rows[n//2]``."""
+    above = [x for x in here.above if isinstance(x, ast.Call | ast.Subscript)]
+    return any(isinstance(x, ast.Subscript) or called(x) in ("range", "arange") for x in above)
+
+
 def _is_an_index(here: Here) -> bool:
     """Whether it is an index, or one of several; what ``np.r_[a, b]`` joins is none."""
     if isinstance(here.parent, ast.Slice):
@@ -300,6 +308,8 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Progra
     whole = whole and not (isinstance(node, ast.Name) and node.id in scope.measures)
     if isinstance(node, ast.BinOp):
         yield from of_operator(here, observed, index or whole)
+        if isinstance(node.op, ast.FloorDiv) and not _counts_in(here):
+            yield here.within(node, "op", ast.Div(), "whole division", 0.97)
         yield from exchanges.of_terms(here, observed)
         yield from exchanges.of_the_row_above(here, scope) if isinstance(node.op, SUMS) else ()
         yield from of_links(here, observed) if isinstance(node.op, ast.MatMult) else ()
@@ -532,6 +542,9 @@ def _target(
                 if other != value_of(key):
                     cost = 1.15 if abs(other - value_of(key)) == 1 else 1.17
                     yield here.within(holder, field, number(other), "index", cost)
+            for other_name in sorted(scope.counting):  # not the same one in every turn
+                other_key = ast.Name(other_name, ast.Load())
+                yield here.within(holder, field, other_key, "index", _IN_EVERY_TURN)
             if len(sizes) > 1 and isinstance(getattr(here.node, "value", None), ast.Constant):
                 yield here.within(holder, field, ast.Slice(), "index", 1.1)  # a whole row of ones
         elif not isinstance(key, ast.Slice):

@@ -25,6 +25,8 @@ _TURNED = 1.02
 """Cost of a rotation in the plane the other way: ``c*x + s*y, -s*x + c*y``."""
 _MOST = 6
 """Names of one statement of which any two may be exchanged."""
+_PARTS = 1.06
+"""Cost of the other parts of all complex numbers in a statement."""
 _OF_TWO = 1.12
 """Cost of the other function and the other sign of one term."""
 _OF_TERMS, _TERMS = 1.16, 12
@@ -41,6 +43,14 @@ def of_statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
         if isinstance(node, ast.Name | ast.Subscript) and _plain(node):
             uses.setdefault(ast.unparse(node), []).append(node)
     yield from _rows_throughout(here, value)
+    for one, other in (("real", "imag"), ("imag", "real")):
+        parts = [x for x in nodes(value) if isinstance(x, ast.Attribute) and x.attr == one]
+        if len(parts) > 1:
+            turned = copied(value)
+            for node in nodes(turned):
+                if isinstance(node, ast.Attribute) and node.attr == one:
+                    node.attr = other
+            yield here.within(here.node, "value", turned, "function", _PARTS)
     yield from _poses_exchanged(here, value)
     yield from _coefficients_exchanged(here, value, observed)
     shapes: dict[str, Shape | None] = {}

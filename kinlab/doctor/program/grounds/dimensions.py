@@ -209,6 +209,8 @@ class Dimensions:
             if not isinstance(change.holder, ast.expr) or isinstance(change.field, int):
                 return 0.0
             old = change.holder
+            if change.field == "value" and isinstance(new, int | float) and not new:
+                return 0.0  # nothing is of any dimension
             new = with_other(old, change.field, None, new)
         try:
             found = self._of_new(new)

@@ -566,6 +566,10 @@ def _among(value: float, known: Array) -> bool:
     return bool(np.any(np.abs(np.abs(known) - abs(value)) <= close))
 
 
+_THROUGH = ("enumerate", "zip", "reversed")
+"""What a loop goes through rows by."""
+
+
 def _alone(tree: ast.AST, made: set[str]) -> Iterator[ast.expr]:
     """The numbers, and parts of pi or 1, that names are set to as they are, or that are in lists.
 
@@ -574,6 +578,10 @@ def _alone(tree: ast.AST, made: set[str]) -> Iterator[ast.expr]:
     """
     for node in nodes(tree):
         waiting: list[Any] = [node.value] if isinstance(node, ast.Assign) else []
+        if isinstance(node, ast.For):  # rows that are typed where a loop goes through them
+            over = node.iter
+            through = isinstance(over, ast.Call) and called(over) in _THROUGH
+            waiting += over.args if isinstance(over, ast.Call) and through else [over]
         if isinstance(node, ast.arguments):
             waiting += [one for one in (*node.defaults, *node.kw_defaults) if one is not None]
         while waiting:

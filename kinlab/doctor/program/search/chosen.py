@@ -142,7 +142,7 @@ def _mirroring(asked: Asked, observed: Observed) -> Callable[[ProgramEdit], bool
     parts = asked.trial.program.parts
 
     def mirrors(edit: ProgramEdit) -> bool:
-        if edit.kind != "sign":
+        if edit.kind != "sign" or edit.changes[0].field == "op":  # a sum for a difference
             return False
         if edit.part != DATA and (row := _row_that_is_set(edit, observed)) is not None:
             positive = not any(is_own(robot, -x) for x in row) or _is_distance(edit)

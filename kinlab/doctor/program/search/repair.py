@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ast
 import copy
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -204,8 +205,12 @@ class LineSearch:
         return other
 
     def look_again(self) -> None:
-        """Watches the program as it stands now: what is right in it may be more than before."""
-        self.observed = Observed(self.trial, self.asked.states)
+        """Watches the program as it stands now: what is right in it may be more than before.
+
+        A program that fails at one of its states then is as it was seen last.
+        """
+        with suppress(FailedError):
+            self.observed = Observed(self.trial, self.asked.states)
         self.arms = replace(self.arms, observed=self.observed)
         self.evidence = self._grounds()
 

@@ -12,8 +12,10 @@ from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.operators import DIAGONALS
 from kinlab.doctor.program.edits.single.whole import plus, whole_constant
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, number
+from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, number, root
 
+_AXES = 2
+"""Axes of an array of which another may be meant, at least."""
 _ORDERED = ("cross", "dot", "arctan2", "atan2", "outer", "solve", "matmul", "subtract", "array")
 _DIAGONAL = 1.02
 """Cost of the main diagonal for another."""
@@ -33,6 +35,12 @@ _QUADRANT = 0.99
 """Cost of the angle of two sides for that of their quotient."""
 _FEWER = 1.12
 """Cost of another function of the program's own that asks for less."""
+_ALIASED = 1.0
+"""Cost of a copy of what is changed in place."""
+_TRIANGLES, _TRIANGLE = ("tril", "triu"), 0.98
+"""Functions that take one triangle each, and the cost of one for the other."""
+_OF_A_FAMILY = 1.14
+"""Cost of another function of a family."""
 _FAMILIES = (
     ("zeros", "ones"),
     ("array", "asarray", "cumsum"),
@@ -41,7 +49,7 @@ _FAMILIES = (
     ("arcsin", "arccos", "arctan"),
     ("asin", "acos", "atan"),
     ("hstack", "vstack", "column_stack"),
-    ("tril", "triu"),
+    _TRIANGLES,
     ("radians", "degrees"),
     ("deg2rad", "rad2deg"),
     ("inv", "pinv"),
@@ -106,16 +114,16 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
     if name == "range":
         yield from _range(here, scope)
     for word in node.keywords:
-        if (
-            word.arg == "axis"
-            and isinstance(word.value, ast.Constant)
-            and word.value.value in (0, 1)
-        ):
-            yield here.within(word, "value", number(1 - word.value.value), "index", 1.08)
+        axes = range(max(_AXES, len(observed.shape(node) or ())))
+        if word.arg == "axis" and getattr(word.value, "value", None) in axes:
+            for axis in axes:
+                if axis != getattr(word.value, "value", None):
+                    yield here.within(word, "value", number(axis), "index", 1.08)
     if name == "zip" and len(cut := {_cut(one) for one in node.args}) == 1 and cut != {""}:
         wholes = [getattr(one, "value", one) for one in node.args]
         yield here.within(node, "args", wholes, "loop", 1.08)
     yield from _other_function(here, name)
+    yield from _of_a_copy(here, scope, observed)
     if name in ("arctan", "atan") and len(node.args) == 1:
         yield from _of_both_sides(here, scope, name)
     if name in _ARCS and len(node.args) == 1:
@@ -234,6 +242,20 @@ def _is_typed_in(node: ast.expr) -> bool:
     return all(isinstance(one, plain) for one in nodes(node))
 
 
+def _of_a_copy(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
+    """A copy of an array that is kept in a list, and changed in place later."""
+    node = here.node
+    if called(node) != "append" or len(node.args) != 1 or not isinstance(node.args[0], ast.Name):
+        return
+    kept, shape = node.args[0], observed.shape(node.args[0])
+    changed = {root(x.target) for x in nodes(here.above[0]) if isinstance(x, ast.AugAssign)}
+    stores = (x for x in nodes(here.above[0]) if isinstance(x, ast.Subscript))
+    changed |= {root(x) for x in stores if isinstance(x.ctx, ast.Store)}
+    if shape and kept.id in changed:
+        copy = ast.Call(ast.Attribute(kept, "copy", ast.Load()), [], [])
+        yield here.within(node.args, 0, copy, "aliased", _ALIASED)
+
+
 def _other_function(here: Here, name: str) -> Iterator[ProgramEdit]:
     node = here.node
     for family in _FAMILIES:
@@ -241,12 +263,14 @@ def _other_function(here: Here, name: str) -> Iterator[ProgramEdit]:
             if other == "cumsum" and node.args and _is_typed_in(node.args[0]):
                 continue  # numbers are rather wrong themselves
             if name in family and other != name and isinstance(node.func, ast.Attribute):
-                yield here.within(node.func, "attr", other, "function", 1.14)
+                cost = _TRIANGLE if family == _TRIANGLES else _OF_A_FAMILY
+                yield here.within(node.func, "attr", other, "function", cost)
     if name == "cumsum" and isinstance(node.func, ast.Attribute) and len(node.args) == 1:
         back = ast.Slice(None, None, number(-1))  # what lies behind: forces and masses
         inner = ast.Subscript(node.args[0], back, ast.Load())
-        turned = ast.Subscript(ast.Call(node.func, [inner], []), back, ast.Load())
-        yield here.instead(turned, "direction", 1.1)
+        within = ast.Call(node.func, [inner], [])
+        yield here.instead(within, "direction", 1.1)
+        yield here.instead(ast.Subscript(within, back, ast.Load()), "direction", 1.1)
     if name in ("ones", "zeros", "full") and isinstance(node.func, ast.Attribute) and node.args:
         first = node.args[0]
         size = first.elts[0] if isinstance(first, ast.Tuple) and first.elts else first

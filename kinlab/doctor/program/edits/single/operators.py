@@ -169,8 +169,6 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
         if isinstance(left, ast.BinOp) and isinstance(left.op, ast.Mult):
             last = ast.BinOp(left.right, op, right)
             yield here.instead(ast.BinOp(left.left, left.op, last), "parentheses", 1.12)
-    elif isinstance(op, ast.FloorDiv) and not index:
-        yield here.within(node, "op", ast.Div(), "whole division", 0.97)
 
 
 def _is_all(here: Here) -> bool:
