@@ -121,10 +121,13 @@ _FOLLOWS = re.compile(
     r"\s*(?:(?<![<=>])=>|⇒|⟹)\s*|\s*(?:→|⟶|∴)\s*(?=\$?\\?[A-Za-zα-ωΑ-Ω][\w{},₁-₉]{0,12}\s*=)"
 )
 """What follows from what stands before is an equation of its own."""
+_AT = r"(?!\$?\\?(?:q|theta|vartheta|θ|th)_?\{?[\d₀-₉]?\}?\s{0,9}=\s{0,9}[-+±]?\s?[\dπ\\])"
+"""No state: ``so q2 = 0 is singular``."""
 _HENCE = re.compile(
-    r"(?<=\S)\s{0,9}[.,;]?\s{1,9}(?:hence|so|thus|therefore|then|(?:it\s+follows|we\s+find)\s+that|we\s+get|donc|alors"
-    r"|also|daher|somit|folglich|damit|quindi|dunque|luego|entonces|por\s+tanto)\s{0,9}[,:]?\s{1,9}"
-    rf"(?={_NAMED})|(?<=\S)[,，。;；]?\s{{0,9}}(?:因此|所以|于是)[,，]?\s{{0,9}}(?={_NAMED})",
+    r"(?<=\S)\s{0,9}[.,;]?\s{1,9}(?:hence|so|thus|therefore|then|(?:it\s+follows|we\s+find)\s+that"
+    r"|we\s+get|donc|alors|also|daher|somit|folglich|damit|quindi|dunque|luego|entonces|por\s+tanto)"
+    rf"\s{{0,9}}[,:]?\s{{1,9}}{_AT}(?={_NAMED})"
+    rf"|(?<=\S)[,，。;；]?\s{{0,9}}(?:因此|所以|于是)[,，]?\s{{0,9}}{_AT}(?={_NAMED})",
     re.IGNORECASE,
 )
 """What follows, behind what is explained: ``where y = ... . Hence U = ...``."""

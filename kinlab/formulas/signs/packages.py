@@ -39,7 +39,8 @@ _ONE_BASED = re.compile(
 _ENTRY = re.compile(r"^(\s*[A-Za-z])\[\s*([1-9])\s*(?:,\s*([1-9])\s*)?\](?=\s*=)")
 _DISPLAY = re.compile(r"(?<=\S)\s*\\begin\{(equation\*?|displaymath)\}(.*?)\\end\{\1\}", re.DOTALL)
 _WAVES = {"sen": "sin", "tg": "tan"}
-_BELOW = re.compile(r"(?<=_\{)(\d)\s*,\s*(\d\d?)(?:\s*,\s*(\d))?(?=\})")
+_BELOW = re.compile(r"(?<=_\{)(\d)\s*,\s*(?:(\d)\s*,\s*(\d)|(\d\d))(?=\})")
+"""Three indices with commas, as Christoffel's symbols have them: ``c_{3,22}``."""
 _STEP = re.compile(
     r"=\s*(?:(?:\\sum(?![A-Za-z])|[Σ∑])[^=]*"
     r"|(?:(?:\{\s*\}\s*\^\s*\{?\d\}?\s*)?[ATR]_?\{?\d{1,2}\}?\s*(?:[*·@]|\\cdot)?\s*){2,8})(?==)"

@@ -320,7 +320,7 @@ def _of_the_product_rule(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
         return
     factors_, known = node.args, [x for x, shape in scope.shapes.items() if shape == _VECTOR]
     for own, other in (factors_, factors_[::-1]):
-        if not isinstance(own, ast.Name):
+        if not isinstance(own, ast.Name) or not isinstance(other, ast.BinOp):
             continue
         others = [x for x in known if x != own.id and own.id in x.replace("d", "")]
         others += [x for x in known if x != own.id and x in own.id.replace("d", "")]

@@ -130,6 +130,8 @@ def single(search: LineSearch) -> list[ProgramRepair]:
     two = several(_without_right_ones(search))[:1]
     if not two or len(two[0].edits) > _DEEPEST or max(map(search.likely, two[0].edits)) >= _FAR:
         return found
+    if any(_Tried(search).fits((edit,)) for edit in two[0].edits):
+        return found  # of which one does alone
     more = search.left_right(two[0].edits) - search.left_right(found[0].edits)
     if more > 0:
         return two
@@ -239,7 +241,8 @@ class _Several:
             found = self._beside_a_right_function(search)
             if found:
                 return self.settled(search, found)
-        found = [] if search.stand else self._one_more(search, _nearest(search), _REACHED)[0]
+        near = _nearest(search) if search.wide and not search.stand else []
+        found = self._one_more(search, near, _REACHED)[0]
         if found:
             return self.settled(search, found, 1)
         in_order = InOrder(search, known, _IN_ORDER if search.wide else 0)
