@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 import kinlab as kl
+from kinlab.errors import ExpressionError
 
 OF_SYMPY = (
     r"\frac{g l_{2} m_{2} \cos{\left(\theta_{1}{\left(t \right)} + \theta_{2}{\left(t \right)} "
@@ -111,3 +112,35 @@ def test_decimal_commas() -> None:
     wrong = kl.diagnose("single_link", "inverse_dynamics[0]", text.replace("7,3575", "73,575"))
     assert not wrong.agrees
     assert wrong.causes
+
+
+@pytest.mark.parametrize(
+    ("quantity", "text"),
+    [
+        (
+            "gravity_torques[1]",
+            r"g_2 = m_2 g l_2 \cos(\theta_1+\theta_2) \unit{\milli\newton\metre}",
+        ),
+        ("fk[0,3]", r"x = \SI{500}{\milli\metre}\cos q_1 + l_2\cos(q_1+q_2)"),
+        ("fk[0,3]", r"x = \SI{0.5}{mm}\cos q_1 + l_2\cos(q_1+q_2)"),
+    ],
+)
+def test_units_that_change_a_number_are_not_passed_over(quantity: str, text: str) -> None:
+    with pytest.raises(ExpressionError):
+        kl.diagnose("planar2r", quantity, text)
+
+
+@pytest.mark.parametrize(
+    "unit", [r"\newton\metre", r"\kilogram\metre\squared\per\second\squared", "N m"]
+)
+def test_units_of_si_are_left_out(unit: str) -> None:
+    text = rf"g_2 = m_2 g l_2 \cos(\theta_1+\theta_2) \unit{{{unit}}}"
+    assert kl.diagnose("planar2r", "gravity_torques[1]", text).agrees
+
+
+@pytest.mark.parametrize("step", ["Σ mᵢ g xᵢ", r"\sum m_i g x_i", "A2 A1"])
+def test_a_step_that_is_left_out_is_said(step: str) -> None:
+    text = f"U = {step} = (m1+m2)*g*l1*sin(q1) + m2*g*l2*sin(q1+q2)"
+    found = kl.diagnose("planar2r", "potential_energy", text)
+    assert found.agrees
+    assert any("was not judged" in remark for remark in found.remarks)

@@ -22,7 +22,7 @@ from kinlab.formulas.signs.brackets import closes
 from kinlab.formulas.signs.dressed import undressed
 from kinlab.formulas.signs.general import for_each_joint
 from kinlab.formulas.signs.macros import written_out
-from kinlab.formulas.signs.packages import of_packages
+from kinlab.formulas.signs.packages import STEP, of_packages
 from kinlab.formulas.signs.printed import as_typed
 from kinlab.formulas.signs.remarks import without_numbers
 from kinlab.formulas.text import refuse_nested
@@ -164,7 +164,10 @@ def as_formula(
         ExpressionError: what can be read in two ways, or a clause that is not so.
     """
     refuse_nested(text, place)
-    text = of_packages(_AND_SO_ON.sub("", as_typed(text)))
+    text = _AND_SO_ON.sub("", as_typed(text))
+    unjudged = _("the step {words!r} was not judged")
+    steps = [unjudged.format(words=one[0].strip("=& ")) for one in STEP.finditer(text)]
+    text = of_packages(text)
     text = _HENCE.sub("\n", without_prompts(without_gaps(text)))
     text = _BOLD.sub(r"\1", written_out(with_definitions(text), place))
     text = _GREEK_ANGLE.sub(r"\1(\2)", text) if "\\" not in text else text
@@ -203,7 +206,7 @@ def as_formula(
     text, said = without_constant(without_units(text, entry, place), entry)
     return (
         of_column(text, entry, place),
-        "; ".join(filter(None, (numbered, marks, said, tried))),
+        "; ".join(filter(None, (numbered, marks, said, tried, *steps))),
         doubts,
     )
 

@@ -8,11 +8,16 @@ from __future__ import annotations
 import re
 
 _GROUP = r"\{((?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*)\}"
+_OF_SI = (
+    r"\{(?:\\(?:kilogram|kilo\s?\\gram|metre|meter|second|radian|newton|joule|watt|per|squared|square"
+    r"|cubed|cdot)(?![A-Za-z])|kg|rad|Nm|[NJWs]|m(?!m)|[\s.~*/^\d-])*\}"
+)
+"""A unit that changes no number: ``\\milli`` does, and stays to be refused."""
 _NUMBER = re.compile(
-    r"\\(?:SI|qty)\s*(?:\[[^\]]*\])?\s*\{\s*([-+]?[\d.,]+)\s*\}\s*\{[^{}]*\}"
+    rf"\\(?:SI|qty)\s*(?:\[[^\]]*\])?\s*\{{\s*([-+]?[\d.,]+)\s*\}}\s*{_OF_SI}"
     r"|\\num\s*(?:\[[^\]]*\])?\s*\{\s*([-+]?[\d.,]+)\s*\}"
 )
-_UNIT = re.compile(r"\\(?:si|unit)\s*(?:\[[^\]]*\])?\s*\{[^{}]*\}")
+_UNIT = re.compile(rf"\\(?:si|unit)\s*(?:\[[^\]]*\])?\s*{_OF_SI}")
 _SLOPE = re.compile(rf"\\(?P<kind>p?dv|pderiv|deriv)\s*{_GROUP}\s*{_GROUP}")
 _FENCE = re.compile(r"\\(?:qty|quantity)\s*(?=[(\[{|])|\\(?:pqty|bqty)\s*(?=\{)")
 _OF_TIME = re.compile(
@@ -41,7 +46,7 @@ _DISPLAY = re.compile(r"(?<=\S)\s*\\begin\{(equation\*?|displaymath)\}(.*?)\\end
 _WAVES = {"sen": "sin", "tg": "tan"}
 _BELOW = re.compile(r"(?<=_\{)(\d)\s*,\s*(?:(\d)\s*,\s*(\d)|(\d\d))(?=\})")
 """Three indices with commas, as Christoffel's symbols have them: ``c_{3,22}``."""
-_STEP = re.compile(
+STEP = re.compile(
     r"=\s*(?:(?:\\sum(?![A-Za-z])|[Σ∑])[^=]*"
     r"|(?:(?:\{\s*\}\s*\^\s*\{?\d\}?\s*)?[ATR]_?\{?\d{1,2}\}?\s*(?:[*·@]|\\cdot)?\s*){2,8})(?==)"
 )
@@ -50,7 +55,7 @@ _STEP = re.compile(
 
 def of_packages(text: str) -> str:
     """The text with LaTeX that needs no package, and no program's way of writing rates."""
-    text = _STEP.sub("", _PRINTED.sub("", text))
+    text = STEP.sub("", _PRINTED.sub("", text))
     text = _MATHEMATICAS.sub(_of_mathematica, text)
     if _ONE_BASED.search(text):
         text = _ENTRY.sub(lambda found: "".join(filter(None, found.groups())), text)
