@@ -704,9 +704,10 @@ def as_column(text: str, entry: str) -> str:
             own.append(line)
         else:
             given[name] = right
-    if {*given} != {*"xyp"}:
+    order = next((one for one in ("xyp", "xycs") if {*one} == {*given}), "")
+    if not order:
         return text
-    given = {name: given[name] for name in "xyp"}
+    given = {name: given[name] for name in order}
     if not is_latex(text):
         return "; ".join([*own, f"[{'; '.join(given.values())}]"])
     column = r"\begin{bmatrix}" + r"\\".join(given.values()) + r"\end{bmatrix}"
@@ -714,7 +715,12 @@ def as_column(text: str, entry: str) -> str:
 
 
 _PLANAR = {"x": "x", "y": "y", "px": "x", "py": "y"}
-_PLANAR |= dict.fromkeys(("phi", "varphi", "φ", "ϕ", "theta", "θ", "psi", "alpha"), "p")
+_ORIENTATION = ("phi", "varphi", "φ", "ϕ", "theta", "θ", "psi", "alpha")
+_PLANAR |= dict.fromkeys(_ORIENTATION, "p")
+_PLANAR |= {
+    f"{wave}{angle}": wave[0] for wave in ("cos", "sin", "c", "s") for angle in _ORIENTATION
+}
+_PLANAR |= {f"{wave}({angle})": wave[0] for wave in ("cos", "sin") for angle in _ORIENTATION}
 
 
 def is_angle(left: str) -> bool:

@@ -191,6 +191,20 @@ def test_a_pose_of_another_frame_is_another(left):
         kl.diagnose("planar2r", "fk", f"{left} = {TOOL}")
 
 
+TURNED = "[[c3, -s3, 0, a2], [0, 0, -1, 0], [s3, c3, 0, 0], [0, 0, 0, 1]]"
+
+
+@pytest.mark.parametrize("left", ["{}^{2}_{3}T", "^2_3T", "{}^2T_3", "T_3^2", "T_{23}", "²T₃"])
+def test_a_pose_of_neighbours_is_a_link_transform_in_any_writing(left):
+    assert kl.diagnose("spatial3r", "link_transforms[2]", f"{left} = {TURNED}").agrees
+
+
+@pytest.mark.parametrize("left", ["{}^1_2T", "T_2^3", "{}^{3}T_{2}", "³T₂", "{}^0_3T", "¹T₂"])
+def test_a_pose_of_other_neighbours_is_another(left):
+    with pytest.raises(ExpressionError, match="which is another"):
+        kl.diagnose("spatial3r", "link_transforms[2]", f"{left} = {TURNED}")
+
+
 def test_a_rotation_of_another_frame_is_another():
     turn = "[[c12, -s12, 0], [s12, c12, 0], [0, 0, 1]]"
     assert kl.diagnose("planar2r", "fk[:3,:3]", f"R_2^0 = {turn}").agrees

@@ -25,7 +25,19 @@ FORCES = "τ₂ = −(l₂ s₁₂ + l₃ s₁₂₃) Fx + (l₂ c₁₂ + l₃ 
 SO_ON = (
     r"J_{11}=-l_1 s_1 - l_2 s_{12},\ s_1=\sin\theta_1,\ s_{12}=\sin(\theta_1+\theta_2)\ \text{usw.}"
 )
+IN_ROWS = (
+    r"\begin{aligned} x &= l_1 C_1 + l_2 C_{12} + l_3 C_{123}\\ "
+    r"y &= l_1 S_1 + l_2 S_{12} + l_3 S_{123}\\ "
+    r"\cos\varphi &= C_{123}\\ \sin\varphi &= S_{123} \end{aligned}"
+)
+IN_WAVES = "x = l1 c1 + l2 c12; y = l1 s1 + l2 s12; cos(phi) = c12; s_phi = s12"
+HALVES = r"V = m g \frac l2 \sin q"
+BY_LAW = "τ = Jᵀ F : tau1 = -(l1 s1 + l2 s12) Fx + (l1 c1 + l2 c12) Fy + Mz, tau2 = -l2 s12 Fx + l2 c12 Fy + Mz"
 CASES = [
+    ("planar3r", "planar_pose", IN_ROWS, "&= C_{123}", "&= C_{12}"),
+    ("planar2r", "planar_pose", IN_WAVES, "s_phi = s12", "s_phi = s1"),
+    ("single_link", "potential_energy", HALVES, r"\sin q", r"\cos q"),
+    ("planar2r", "statics", BY_LAW, "tau2 = -", "tau2 = "),
     ("planar2r_rods", "mass_matrix[0,0]", PRETTY, "cos(q₂) + ", "cos(q₂) - "),
     ("planar2r_rods", "coriolis_matrix", DRAWN, "(q̇1+q̇2)", "(q̇1-q̇2)"),
     ("planar2r", "mass_matrix[0,0]", SCANNED, "2 m 2", "m 2"),

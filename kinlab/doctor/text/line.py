@@ -266,8 +266,8 @@ class Line:
             digits = name in self.text.numbers and not self.text.symbols[name].isidentifier()
             if digits or not name.isidentifier() or keyword.iskeyword(name):
                 continue
-            if self._by_chance(name):
-                continue
+            if self._by_chance(name) or replace(self.text, text=name).foreign({*self.at}):
+                continue  # of what the formula does not use nobody has looked at the names
             if not self.turns(name) and np.any(value := self._named(name)):
                 found[name] = value  # a factor that is zero takes a term out
         mine = set(self.spelling)

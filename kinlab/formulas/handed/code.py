@@ -34,7 +34,7 @@ _DEFINED = re.compile(
     rf"^\s*def\s+(\w+)\s*\(\s*(?:self\s*,\s*)?{_STATE}(?:\s*,\s*{_STATE})*\s*\)[^:\n]*:\s*"
 )
 _RETURN = re.compile(r"^[ \t]*return\s+(?=\S)", re.MULTILINE)
-_IMPORT = re.compile(r"^[ \t]*(?:import|from)[ \t]+\w[^\n]*\n", re.MULTILINE)
+_IMPORT = re.compile(r"^[ \t]*(?:import|from)[ \t]+\w[^\n;]*(?:\n|;[ \t]*)", re.MULTILINE)
 _OWNER = re.compile(
     r"(?<![\w.])(self|this|p|par|param|params|robot|arm|obj|model|cfg|config|prm)\.(?=[A-Za-z_])"
 )
@@ -205,11 +205,11 @@ def _with_point(found: re.Match[str], text: str) -> str:
 
 def _of_function(text: str) -> str:
     """What a function answers, with the lines before."""
-    text = _LAMBDA.sub(lambda found: found[1] or "", text)
-    found = _DEFINED.match(_IMPORT.sub("", text))
+    text = _LAMBDA.sub(lambda found: found[1] or "", _IMPORT.sub("", text))
+    found = _DEFINED.match(text)
     if found is None:
         return text
-    body = _IMPORT.sub("", text)[found.end() :]
+    body = text[found.end() :]
     return _RETURN.sub("", "\n".join(line.strip() for line in body.split("\n") if line.strip()))
 
 

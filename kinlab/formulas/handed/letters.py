@@ -28,6 +28,12 @@ _AS_LATIN = str.maketrans("ТКМСВАЕНРХПГ", "TKMCBAEHPXVG")
 _BELOW = re.compile(r"<sub>\s*(\w{1,6})\s*</sub>", re.IGNORECASE)
 _ABOVE = re.compile(r"<sup>\s*(\d)\s*</sup>", re.IGNORECASE)
 _BREAK = re.compile(r"<br\s*/?>", re.IGNORECASE)
+_FRAME = re.compile(r"(?<![^\s(=$])([⁰¹²³⁴⁵⁶])(?=[TRAH][₀-₉\d_])")
+"""The frame that a pose is in: ``²T₃``."""
+_IN_PARENTHESES = re.compile(r"_\(\s*([A-Za-z0-9](?:[A-Za-z0-9 ,]{0,6}[A-Za-z0-9])?)\s*\)")
+"""A subscript of Word's or Typst's: ``l_(c 1)``."""
+_DOTTED = re.compile("\\(\\s?([A-Za-z\u03b1-\u03c9])(_?[\\w{}₁-₉]{0,4})\\s?\\)\\s?([\u0307\u0308])")
+"""A dot of Word's, behind what it stands above."""
 _SUBSCRIPT = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 _SUPERSCRIPT = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -40,10 +46,13 @@ def plain_letters(text: str, place: str) -> str:
     """
     if "<" in text:
         text = _BREAK.sub("\n", _BELOW.sub(_below, _ABOVE.sub(_above, text)))
+    text = _IN_PARENTHESES.sub(lambda found: f"_{{{found[1].replace(' ', '')}}}", text)
     if text.isascii():
         return text
+    text = _DOTTED.sub(r"\1\3\2", text)
     text = _MATHEMATICAL.sub(lambda found: unicodedata.normalize("NFKC", found[0]), text)
     text = text.translate(_UNSEEN).translate(_PLAIN)
+    text = _FRAME.sub(lambda found: f"^{unicodedata.normalize('NFKC', found[1])}", text)
     text = _ALIKE.sub(lambda found: found[0].translate(_AS_LATIN), _APART.sub(r"\1", text))
     return _FRACTION.sub(lambda found: _fraction(found, place), text)
 

@@ -82,9 +82,15 @@ _CONDITION = re.compile(
     r"|(?P<letter>[lLmI])[1-9]\s*=\s*(?P=letter)[1-9](?![\w*/+-]|\s*[*/^+-]))"
 )
 _WORKED_OUT = re.compile(
-    r"[\d./]*\s*(?:\\?(?:arc|a?tan|a?cos|a?sin|sqrt|operatorname|[dt]?frac|left)|[*(^])"
+    r"[\d./]*\s*(?:\\?(?:arc|a?tan|a?cos|a?sin|sqrt|operatorname|[dt]?frac|left)|[*(^]"
+    r"|(?:theta|θ|q)(?!\s*[d'1-9₁-₉]*\s*=))"
 )
 """What goes on behind a number as a formula: ``theta = 2 arctan ...``."""
+_IN_CHAIN = re.compile(
+    r"=(?:[^,;，；。:=\nA-Za-z]|(?<!\d)\.|(?<![A-Za-z])(?:sin|cos|tan|sqrt|pi|d?t?frac|[A-Za-z])(?![A-Za-z])){1,400}$"
+)
+"""What stands between two signs of equality of a chain: no word, and nothing that ends it."""
+_OPERATION = re.compile(r"[-+*/^(\d]|sin|cos")
 _ALONE = re.compile(r"[\d.]*°?(?:\s*/\s*\d+)?\s*(?:$|[,;，；\n)])")
 """What ends a number."""
 _INERTIA = re.compile(
@@ -300,13 +306,15 @@ def _conditions_in(plain: str) -> Iterator[re.Match[str]]:
     """Equations of an angle with a number, but for those that go on as a formula."""
     for found in _CONDITION.finditer(plain):
         number = found.end() - 1 if plain[found.end() - 1].isdigit() else found.end()
-        if found["letter"] or not _WORKED_OUT.match(plain, number):
+        goes_on = not found["letter"] and _WORKED_OUT.match(plain, number)
+        step = _IN_CHAIN.search(plain, 0, found.start())
+        if not goes_on and not (step and _OPERATION.search(step[0])):
             yield found
 
 
 def flat(text: str) -> str:
     """A text without braces, dollars, dots over letters and what stands below the line."""
-    return re.sub(r"[{}_\\$]|d{1,2}ot\b\s*", "", text)
+    return re.sub(r"[{}_\\$]|d{1,2}ot\b\s*", "", re.sub(r"\\[,;:! ]", " ", text))
 
 
 def _words_in(text: str) -> bool:

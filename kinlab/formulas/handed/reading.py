@@ -78,6 +78,11 @@ _WRENCH = re.compile(
     r"(?:[,;]\s*[NnMm]_?\{?z\}?\s*)?[\])](?:\s*\^?\s*(?:T\b|\\top)|')?"
 )
 """The tool's force and moment by their parts, in their order: ``F = [Fx, Fy, Nz]``."""
+_LAW = re.compile(
+    r"^\s*\$?(?:\\tau|tau|τ)\s*=\s*J\s?(?:ᵀ|\^\s?(?:T|\{\s?T\s?\}|\\top)|['’]|\.T)\s?[*@]?\s?[FfWwh]"
+    r"\s*[:：]\s*(?=\S)"
+)
+"""What static torques are, in front of them: ``τ = Jᵀ F : tau1 = ...``."""
 _CONSTANT = re.compile(
     r"[,;，；]\s*(?:(?:which|it|das)\s+)?(?:(?:is|ist)\s+)?(?:an?\s+|为|是)?"
     r"(?:constants?|konstante?|costante|constante|常数|常量)\s*[.。]?\s*$",
@@ -105,6 +110,11 @@ _PLACE = re.compile(r"(?<![\w.])([A-Za-zθ]\w*)\[\s*([1-9])\s*\](?:\s*\(\s*t\s*\
 _ANY_ZERO = re.compile(r"\[\s*0\s*[\],]|\*\*")
 _BOLD = re.compile(r"\*\*([A-Za-zÀ-ž\u4e00-\u9fff][^*\n=+/]{0,60}[:.：])\*\*")
 """Markdown's ``**Answer:**``."""
+_BOLD_SIDES = re.compile(
+    r"(?<!\S)\*\*([A-Za-z]\w{0,8})\*\*(?=\s*=)"
+    r"|(?<==)\s{0,9}\*\*(?=[^\s*])([^\n]{1,400}?)(?<=[^\s*])\*\*(?=\s*(?:\n|$))"
+)
+"""A bold name, or a bold end of a chain: ``**M33** = ... = **m3*l3^2/3**``."""
 _GREEK_ANGLE = re.compile(r"(?<![A-Za-z])(sin|cos|tan)([θϑφϕ](?:[₁-₉]|[1-9])?)(?![\w₁-₉²³(^])")
 """A function with its angle, and nothing between: ``cosθ2``."""
 _MAPLES = re.compile(r":(?=\s*(?:$|\n|[A-Za-z]\w{0,20}(?:\[[\d,\s]{1,5}\])?\s*:=))")
@@ -115,10 +125,11 @@ _WHERE = re.compile(
 )
 _AND = re.compile(rf"(?<=\s)(?:et|y|e|и)\s+(?={_NAMED})")
 """What stands between a formula and what is explained behind it, and between two such."""
+_FULL_STOP = re.compile(r"(?<=\$)\s{0,9}[。．]\s*$")
 _IN_WORDS = re.compile(r"\\text\s*\{\s*([()\[\]])\s*\}")
 """A bracket that is set as words are: ``\\text{(}d_3 = q_3)``."""
 _FOLLOWS = re.compile(
-    r"\s*(?:(?<![<=>])=>|⇒|⟹)\s*|\s*(?:→|⟶|∴)\s*(?=\$?\\?[A-Za-zα-ωΑ-Ω][\w{},₁-₉]{0,12}\s*=)"
+    r"\s*(?:(?<![<=>])=>|⇒|⟹)\s*|[,;.]?\s{0,9}(?<!\w)d['’]où\s{0,9}[,:]?\s*|\s*(?:→|⟶|∴)\s*(?=\$?\\?[A-Za-zα-ωΑ-Ω][\w{},₁-₉]{0,12}\s*=)"
 )
 """What follows from what stands before is an equation of its own."""
 _AT = r"(?!\$?\\?(?:q|theta|vartheta|θ|th)_?\{?[\d₀-₉]?\}?\s{0,9}=\s{0,9}[-+±]?\s?[\dπ\\])"
@@ -169,9 +180,11 @@ def as_formula(
     steps = [unjudged.format(words=one[0].strip("=& ")) for one in STEP.finditer(text)]
     text = of_packages(text)
     text = _HENCE.sub("\n", without_prompts(without_gaps(text)))
+    text = _BOLD_SIDES.sub(lambda found: found[1] or f" {found[2]}", text)
     text = _BOLD.sub(r"\1", written_out(with_definitions(text), place))
     text = _GREEK_ANGLE.sub(r"\1(\2)", text) if "\\" not in text else text
     text = _ACCENTED.sub(lambda letter: unicodedata.normalize("NFC", letter[0]), text)
+    text = _FULL_STOP.sub("", text)
     text = _FOLLOWS.sub("\n", _IN_WORDS.sub(r"\1", _ELLIPSIS.sub(".", text)))
     text = for_each_joint(_in_english(with_units_inside(_STAR_SAID.sub("", text))))
     text = _ABBREVIATED.sub(_where, text)
@@ -190,6 +203,7 @@ def as_formula(
         text = _STATIC_TORQUE.sub(_of_gravity, text)
     text = _NUMBERS.sub(lambda found: f"{_BETWEEN.sub('; ', found[1]).rstrip('; ')}; ", text)
     text = _MEANS.sub(r"\1, where ", _SCORE.sub(" ", text), count=1)
+    text = _LAW.sub("", text) if entry.startswith("statics") else text
     text = _WRENCH.sub("", text) if entry.startswith(_OF_A_WRENCH) else text
     constant = _CONSTANT.search(text)
     if constant and not _MOVING.search(text[: constant.start()].partition("=")[2]):

@@ -36,7 +36,7 @@ _COMMENT = re.compile(r"(?<!\\)(?<![\d ] )(?:^|(?<=[\s;]))%[^\n=]*$", re.MULTILI
 """A comment of LaTeX's or MATLAB's, without an equation in it."""
 _ABOUT = re.compile(
     rf"(?<![\w*/^+=-])[xyz]-(?=(?:coordinate|component|position|koordinate|komponente)[{LATIN}]*)"
-    r"|\(\s*(?:units?|einheit(?:en)?|单位)\s*[:：]?\s*(?:kg|rad|Nm|N|m|J|s|SI)(?![A-Za-z])[\s/^0-9*·kgNmJsrad]{0,8}\)"
+    r"|[(（]\s*(?:units?|einheit(?:en)?|单位)\s*[:：]?\s*(?:kg|rad|Nm|N|m|J|s|SI)(?![A-Za-z])[\s/^0-9*·kgNmJsrad,，、]{0,8}[)）]"
     rf"|(?<=[\w)}}\]])\s\((?:[{LATIN}]{{2,20}}[ ,]{{1,2}}){{2,8}}[{LATIN}]{{2,20}}\)",
     re.IGNORECASE,
 )
@@ -73,11 +73,13 @@ _ALIGNED = re.compile(
 )
 _NAME = re.compile(
     r"\s*&?\s*(?:det\s*\(?\s*J\s*\)?(?:\(\w+\))?"
-    r"|\\?[A-Za-zα-ωΑ-Ω][\w\\{}'₀-₉ ̇̈^,]*(?:\s*\([^()]{0,30}\)|\[[\d,\[\]]+\])?"
+    r"|(?:(?:\{\s?\}\s?)?(?:[_^]\{?\s?\d\s?\}?\s?){1,2})?\\?[A-Za-zα-ωΑ-Ω][\w\\{}'₀-₉ ̇̈^,]*"
+    r"(?:\s*\([^()]{0,30}\)|\[[\d,\[\]]+\])?"
     r"|\\(?:det|dot|ddot|mathrm|text|boldsymbol|mathbf)[^=]{1,40})\s*"
 )
 _NEXT_LINE = re.compile(
-    r"\n(?=[^\n=]{1,40}=)|\\\\(?:\[[^\]]*\])?\s*(?=[&\s]{0,9}\\?[A-Za-z][^\n=+*/-]{0,30}=)"
+    r"\n(?=[ \t&]{0,40}[^\s=&][^\n=]{0,40}=)"
+    r"|\\\\(?:\[[^\]]*\])?\s*(?=[&\s]{0,9}\\?[A-Za-z][^\n=+*/-]{0,30}=)"
 )
 _SIGNS = re.compile(r"[_{}\\\s$&]")
 

@@ -19,8 +19,8 @@ _BEHIND_MATHS = re.compile(
 
 
 def with_units_inside(text: str) -> str:
-    """Units behind a number's dollars within these: ``$l_1 = 0.5$ m``."""
-    return _BEHIND_MATHS.sub(_within, text)
+    """Units behind a number's dollars within these: ``$l_1 = 0.5$ m``; and behind a formula's."""
+    return _AT_THE_END.sub(r"\\,\\mathrm{ \g<unit>}$", _BEHIND_MATHS.sub(_within, text))
 
 
 def _within(found: re.Match[str]) -> str:
@@ -43,7 +43,13 @@ _SIZES = {
 }
 """Powers of metre, kilogram and second in each unit."""
 _ENTRIES = (
-    (re.compile(r"(?:p_?)?[xyz](?:_?e)?|[TAH]_?[123]4|fk\[[012],3\]"), {(1, 0, 0)}),
+    (
+        re.compile(
+            r"(?:p_?)?[xyz](?:_?e)?|[TAH]_?[123]4|fk\[[012],3\]"
+            r"|com_positions\[\d,[012]\]|dh_poses\[\d,[012],3\]|planar_pose\[[01]\]"
+        ),
+        {(1, 0, 0)},
+    ),
     (re.compile(r"[VUPTKL]|E_?[pk]|kinetic\w*|potential\w*|lagrangian"), {(2, 1, -2)}),
     (
         re.compile(
@@ -75,6 +81,7 @@ _POWER = r"(?:\s?(?:\^|\*\*)\s?(?:\{\s*-?[1-4]\s*\}|-?[1-4])|[²³⁴]|⁻[¹²]
 _ATOM = rf"(?:Nms|Nm|kgm|kg|rad|N|J|m|s)(?![A-Za-z]){_POWER}"
 _BETWEEN = r"(?:\s|~|\\[,;:! ]|\\cdot(?![A-Za-z])|[*·⋅/]){0,6}+"
 _UNIT = rf"{_ATOM}(?:{_BETWEEN}{_ATOM}){{0,5}}"
+_AT_THE_END = re.compile(rf"(?<=[\w}})\]])\s?\$\s{{1,9}}(?P<unit>{_UNIT})\s{{0,9}}\.?\s*$")
 _FONT = r"\\(?:text|textrm|mathrm|mbox|si|unit|rm)\s*"
 _IN = r"(?:in\s+)?"
 _DRESSED = (
@@ -83,7 +90,8 @@ _DRESSED = (
 )
 _END = (
     rf"(?={_SPACE}(?:$|\$|\\\]|\\\)|\\end\b|[\n;]|\\\\|,|\.\s*$|(?:\\text\s*\{{\s*|,\s*|\\quad\s*)?"
-    r"(?:where|with|wobei|mit)\b|其中))"
+    r"(?:where|with|wobei|mit)\b|其中"
+    r"|\s(?:and|und|et|y|e)\s+\$?\\?[A-Za-z]\w{0,5}_?\{?\w{0,4}\}?\s*=))"
 )
 _OTHER_UNITS = r"(?:mm|cm|dm|km|deg|degrees|Grad|kN|mJ|kJ|Ncm|Nmm)(?![A-Za-z])(?:\^\d|²)?"
 _AT_END = re.compile(
@@ -260,6 +268,10 @@ def _behind(found: re.Match[str], text: str, wanted: set[tuple[int, int, int]]) 
     return found["before"]
 
 
+_OF_TABLE = re.compile(r"[ad]_?\{?\d\}?")
+"""A length of a row of the table: no mass is taken a2 times."""
+
+
 def _as_number(found: re.Match[str], length: bool) -> str:
     """``l1 = 50 cm`` as ``l1 = 0.5``; a unit that the name's letter does not have stays.
 
@@ -267,7 +279,8 @@ def _as_number(found: re.Match[str], length: bool) -> str:
     """
     unit, name = _unit(found), found["name"].lstrip("\\")
     wanted = size_of_name(name)
-    if wanted is None or (found["d"] == "m" and not length and name[0] not in "lLg"):
+    of_table = _OF_TABLE.fullmatch(name) or name[0] in "lLg"
+    if wanted is None or (found["d"] == "m" and not length and not of_table):
         return found[0]
     if unit == "deg":
         number = rf"{found['number']}*pi/180" if wanted == (0, 0, 0) else ""

@@ -28,7 +28,7 @@ _OWN = (
 """Names of an arm's own numbers, typed as they are: the tool's ``xt``, ``Fx``, ``Izz4``."""
 _TOKEN = re.compile(
     rf"{_WORD}|{_OWN}|\\[A-Za-z]+|\\.|\d+(?:(?:\.|\{{,\}})\d+)?|(?:sin|cos|tan|sqrt|atan2)(?![A-Za-z])"
-    r"|[A-Za-z]|[-+*/^_{}()\[\]=,&|.~]|\s+",
+    r"|(?<![A-Za-z\\])(?:theta|alpha|omega|varphi|phi|tau)(?![A-Za-z])|[A-Za-z]|[-+*/^_{}()\[\]=,&|.~]|\s+",
     re.ASCII,
 )
 _BLANKS = (
@@ -308,6 +308,13 @@ class _Reader:
             return self.single()
         return self.atom()
 
+    def letter_alone(self) -> str:
+        r"""A letter with a number behind, of which LaTeX takes the letter: ``\frac l2`` is l/2."""
+        behind = self.tokens[self.at + 1 : self.at + 2]
+        if len(self.next) == 1 and self.next.isalpha() and behind and behind[0].isdigit():
+            return self.single()
+        return ""
+
     def group(self) -> str:
         closing = _PAIRS[self.take()]
         text = self.sum()
@@ -333,7 +340,7 @@ class _Reader:
             return f"({inside})"
         if token in _FRACTIONS:
             self.take()
-            above = self.argument()
+            above = self.letter_alone() or self.argument()
             return f"(({above})/({self.argument()}))"
         if token in (r"\sqrt", "sqrt"):
             self.take()
@@ -449,7 +456,10 @@ class _Reader:
                 return f"{base}{_raised(exponent)}"
             self.at = mark
             del self.leaves[noted:]
-        return self.leaf(f"{head}{dots}{below}", first) + power
+        plain = f"{head}{dots}{below}"
+        if plain not in self.known and f"{head}_{below}" in self.known:  # I_S of plain text
+            plain = f"{head}_{below}"
+        return self.leaf(plain, first) + power
 
     def letter(self) -> str:
         token = self.next
@@ -461,7 +471,8 @@ class _Reader:
             self.take()
             return "l"
         if token in _GREEK or (token.isalpha() and not self.called() and token != "sqrt"):
-            return _GREEK.get(self.take(), token)
+            self.take()
+            return _GREEK.get(token, _GREEK.get(f"\\{token}", token))
         raise self.unread()
 
     def subscript(self) -> str:

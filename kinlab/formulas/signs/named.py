@@ -28,7 +28,7 @@ _TABLE = (
         f"[prscPR]?<x>{_CENTRE}?<k>|[prscPR]{_CENTRE}?<k><x>",
     ),
     (r"com_positions (?P<k>\d)(?:,:[23])?", f"[prscPR]{_CENTRE}?<k>"),
-    (r"christoffel (?P<i>\d),(?P<j>\d),(?P<k>\d)", "(?:[DdcC]|Gamma)<i><j><k>"),
+    (r"christoffel (?P<i>\d),(?P<j>\d),(?P<k>\d)", "(?:[DdcC]|Gamma)(?:<i><j><k>)?"),
     (r"mass_matrix_dot (?P<i>\d),(?P<j>\d)", "[MDHBmdb]dot<i><j>"),
     (r"mass_matrix_dot", "[MDHB]dot"),
     (r"jacobian_dot (?P<i>\d),(?P<j>\d)", "Jdot<i><j>"),
@@ -118,13 +118,21 @@ _RATE = re.compile(
 _JACOBIAN = re.compile(r"J(?:(?:omega|ω)([xyz]?\d?)|(?:var)?(?:phi|φ|theta|θ))")
 _AXIS_LAST = re.compile(rf"[prsPR]({_CENTRE}?)(\d)([xyz])")
 _END = r"\{?(\d|[eEn]|ee|EE|tcp|TCP)\}?"
-_IN_BASE = re.compile(
-    rf"\\?\{{?([RTAHpPdo])\}}?(?:\^\{{?0\}}?_{_END}|_\{{?0\}}?\^{_END}|_{_END}\^\{{?0\}}?)"
+_LETTER = r"\\?\{?(?P<letter>[RTAHpPdo])\}?"
+_ABOVE = r"\^\{?(?P<base>\d)\}?"
+_BELOW = rf"_(?P<end>{_END.replace('(', '(?:')})"
+_IN_FRAMES = tuple(
+    re.compile(rf"(?:\{{\}})?{one}")
+    for one in (
+        rf"{_LETTER}{_ABOVE}{_BELOW}",
+        rf"{_LETTER}{_BELOW}{_ABOVE}",
+        rf"{_LETTER}_\{{?(?P<base>0)\}}?\^(?P<end>{_END.replace('(', '(?:')})",
+        rf"{_ABOVE}{_LETTER}{_BELOW.replace('_', '_?', 1)}",
+        rf"{_ABOVE}{_BELOW}{_LETTER}",
+        rf"{_BELOW}{_ABOVE}{_LETTER}",
+    )
 )
-_FROM_BASE = re.compile(rf"(?:\{{\}})?\^\{{?0\}}?\\?\{{?([RTAHpPdo])\}}?_{_END}")
-_CRAIG_S = re.compile(
-    rf"(?:\{{\}})?(?:\^\{{?0\}}?_{_END}|_{_END}\^\{{?0\}}?)\\?\{{?(?P<letter>[RTAHpPdo])\}}?"
-)
+"""A pose of a frame in another one, as Craig and others write it: ``{}^2_3T``, ``T_3^2``."""
 _CHRISTOFFEL = re.compile(r"(?:Gamma|Γ)(\d)(\d)(\d)")
 _LONGEST = 80
 
@@ -146,11 +154,10 @@ def plain_name(text: str) -> str:
         return "Jphi" if found[1] is None else f"Jw{found[1]}"
     if found := _AXIS_LAST.fullmatch(plain):
         return f"{found[3]}{found[1]}{found[2]}"
-    spaceless = re.sub(r"\s", "", dotted)
-    if found := _IN_BASE.fullmatch(spaceless) or _FROM_BASE.fullmatch(spaceless):
-        return f"{found[1]}0{found[found.lastindex or 1]}"
-    if found := _CRAIG_S.fullmatch(spaceless):
-        return f"{found['letter']}0{found[1] or found[2]}"
+    spaceless = re.sub(r"\s", "", dotted.translate(_SMALL))
+    for pattern in _IN_FRAMES:
+        if found := pattern.fullmatch(spaceless):
+            return f"{found['letter']}{found['base']}{found['end'].strip('{}')}"
     found = _CHRISTOFFEL.fullmatch(plain)
     return f"Gamma{found[1]}{found[2]}{found[3]}" if found else ""
 

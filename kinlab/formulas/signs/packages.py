@@ -1,6 +1,7 @@
 r"""What programs and packages print: ``\pdv`` of physics, ``\SI`` of siunitx, rates of sympy.
 
-They become LaTeX of the textbooks, or the name of a rate.
+And Typst, which is LaTeX without its backslashes. They become LaTeX of the textbooks, or the name
+of a rate.
 """
 
 from __future__ import annotations
@@ -32,6 +33,10 @@ _RATE = re.compile(
 _MATHEMATICAS = re.compile(
     r"Derivative\[\s*(?P<order>[12])\s*\]\[\s*(?P<head>q|th|theta|θ)_?(?P<k>\d)\s*\]\[\s*t\s*\]"
 )
+_OF_TYPST = re.compile(
+    r"(?<![A-Za-z.\\])dot(?P<twice>\.double)?\(\s{0,9}(?P<name>[A-Za-z]+)(?P<k>_?\{?\d?\}?)\s{0,9}\)"
+    r"|(?<![A-Za-z\\])frac\((?P<above>[^(),=]{1,40}),(?P<below>[^(),=]{1,40})\)"
+)
 _PRINTED = re.compile(r"^\s*tex\([^()\n]*\)\s*[;$]\s*")
 _SINE = re.compile(
     r"\\operatorname\s*\{\s*(sen|tg)\s*\}|\\(sen|tg)(?![A-Za-z])"
@@ -59,6 +64,7 @@ def of_packages(text: str) -> str:
     text = _MATHEMATICAS.sub(_of_mathematica, text)
     if _ONE_BASED.search(text):
         text = _ENTRY.sub(lambda found: "".join(filter(None, found.groups())), text)
+    text = _OF_TYPST.sub(_of_typst, text)
     if "\\" in text:
         text = _DISPLAY.sub(lambda found: f"\n\\[{found[2]}\\]", text)
         text = _NUMBER.sub(lambda found: found[1] or found[2], text)
@@ -73,6 +79,13 @@ def of_packages(text: str) -> str:
 def _slope(found: re.Match[str]) -> str:
     d = "d" if found["kind"] in ("dv", "deriv") else r"\partial"
     return rf"\frac{{{d} {found[2]}}}{{{d} {found[3]}}}"
+
+
+def _of_typst(found: re.Match[str]) -> str:
+    if found["above"]:
+        return rf"\frac{{{found['above'].strip()}}}{{{found['below'].strip()}}}"
+    name = found["name"] if len(found["name"]) == 1 else f"\\{found['name']}"
+    return rf"\{'d' if found['twice'] else ''}dot{{{name}}}{found['k']}"
 
 
 def _rate(found: re.Match[str]) -> str:

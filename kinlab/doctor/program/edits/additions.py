@@ -89,6 +89,8 @@ _OF_NOTHING = 0.06
 """What a term costs more beside a name that is always nought: the name is another."""
 _REST = 1.08
 """Cost of ``1 - x`` for a share x."""
+_COUNTS = ("n", "N", "nj", "dof", "ndof")
+"""Names of how many joints there are, which nobody takes twice."""
 _THRICE = 3
 """How often a name may stand in a sum of three equal links."""
 
@@ -166,7 +168,10 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
             cost = _AS_SET
         yield here.instead(chains.opposite(node), "sign", cost)
     below = isinstance(op, ast.Div) and here.field == "right"
-    if (summand or listed or trig or below) and not isinstance(node, ast.Constant):
+    own = scope.observed.of(node)
+    counts = getattr(node, "attr", getattr(node, "id", "")) in _COUNTS
+    count = own is not None and own.whole and (counts or isinstance(node, ast.IfExp))
+    if (summand or listed or trig or below) and not (isinstance(node, ast.Constant) or count):
         passed = isinstance(parent, ast.Return) and not isinstance(node, ast.BinOp)
         counted = isinstance(_leftmost(node), ast.Constant)
         for value in (2, 0.5, *([_THRICE] * (isinstance(node, ast.Name) and not trig))):

@@ -33,7 +33,12 @@ from kinlab.doctor.program.edits.numbers.data import of_data
 from kinlab.doctor.program.edits.scope.forms import statement_of, summands
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.calls import of_call
-from kinlab.doctor.program.edits.single.comparisons import negated, of_comparison, of_comparisons
+from kinlab.doctor.program.edits.single.comparisons import (
+    is_switch,
+    negated,
+    of_comparison,
+    of_comparisons,
+)
 from kinlab.doctor.program.edits.single.constants import of_constant, of_degrees, of_rods
 from kinlab.doctor.program.edits.single.entries import is_joined, keys_of, of_keys, of_subscript
 from kinlab.doctor.program.edits.single.names import of_attribute, of_name
@@ -345,7 +350,7 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Progra
         yield from exchanges.of_row(here, scope, observed)
         yield from of_rods(here)
         yield from of_origins(here, scope)
-    elif isinstance(node, ast.IfExp):
+    elif isinstance(node, ast.IfExp) and not is_switch(node.test):
         yield here.within(node, "test", negated(node.test), "condition", 1.3)
     elif isinstance(node, ast.Compare):
         yield from of_comparison(here)
@@ -408,7 +413,7 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Program
         yield from _counted(here, scope)
         yield from exchanges.of_statement(here, scope, observed)
     if isinstance(node, ast.If):
-        if node.orelse:
+        if node.orelse and not is_switch(node.test):
             yield here.within(node, "test", negated(node.test), "condition", 1.2)
         yield from _comparison_of(here, node.test)
     if isinstance(node, ast.Assign):

@@ -145,7 +145,8 @@ def arm_apart(
     named = any(hasattr(type(trial.space.get(n)), "_fields") for n in trial.program.held)
     whole = reader.whole and not (named or holds_an_arm(trial)) and len(ways) <= _WAYS
     whole = whole and stays(trial, puts[0])
-    return OtherArm(other, changed, whole, frozenset(reader.fitting), reader.odd)
+    fitting, noughts = frozenset(reader.fitting), frozenset(reader.noughts)
+    return OtherArm(other, changed, whole, fitting, noughts, reader.odd)
 
 
 def works_out(
@@ -229,6 +230,7 @@ class _Reader:
         tied: numbers of the arm's that have one name.
         whole: whether no other number of the program can be the arm's.
         fitting: where numbers are that the arm has as they are called.
+        noughts: where noughts are.
         odd: whether one is none of the arm's, while others of its kind are.
     """
 
@@ -258,6 +260,7 @@ class _Reader:
         self._with_masses_at_ends(told, count)
         self.items: list[_Item] = []
         self.fitting: set[Any] = set()
+        self.noughts: set[Any] = set()
         self.odd = False
         self._look_at_names([x for x in zip(found, told, strict=True) if x[0].alone])
         given: list[tuple[ProgramNumber, Label, list[int]]] = []
@@ -290,7 +293,7 @@ class _Reader:
                 self.items.append(_Item(tuple(((one, k),) for k in some), not label[2]))
             else:
                 inner = label[2][1:]  # a tensor has the same number on both sides of its diagonal
-                inner = tuple(sorted(inner)) if len(inner) == _AXES else inner
+                inner = (*inner[:-_AXES], *sorted(inner[-_AXES:])) if len(inner) >= _AXES else inner
                 key = (label[:2], inner) if one.alone else ()
                 own = may_be_of_one_arm(one.value)
                 value = -one.value if id(one.place.node) in self.negative else one.value
@@ -395,12 +398,14 @@ class _Reader:
         alike: set[str] = set()
         kept = [cell for cell in self.cells if cell.kind == "kept"]  # of a drive, gravity
         for one, label in named:
+            node = one.place.node if one.place.part == DATA else id(one.place.node)
+            if not one.value:  # which fits anything
+                self.noughts.add((node, one.place.place))
             kinds, link = kinds_called(label[0]), self._link(label)
             some = [c for c in self.cells if c.kind in kinds and link in (None, *c.links)]
             every = [cell for cell in self.cells if cell.kind in kinds]
             if _among(some, one.value) and not self._is_of_another(kinds[0], link, one.value):
-                node = one.place.node if one.place.part == DATA else id(one.place.node)
-                if one.value:  # a nought fits anything
+                if one.value:
                     self.fitting.add((node, one.place.place))
                 alike.add(label[0])
             elif some and link is not None and len(label[2]) < 2 and not _among(every, one.value):

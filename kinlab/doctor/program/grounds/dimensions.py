@@ -590,7 +590,7 @@ def _kind(
     row = place.holder if isinstance(place.holder, np.ndarray | list) else []
     if isinstance(row, np.ndarray) and isinstance(place.field, tuple):
         row = row[place.field[:-1]]
-    if size == 1.0 and np.count_nonzero(np.asarray(row, dtype=object)) == 1 < len(row):
+    if size == 1.0 and all(map(np.isscalar, row)) and sum(map(bool, row)) == 1 < len(row):
         return "none"  # an axis
     may = [kind for kind, known in kinds.items() if among(size, known)]
     may += ["gravity"] if may_be_gravity(size) else []

@@ -34,6 +34,7 @@ _TRUSTED = 0.1
 """What it costs more in a function of which a right value is made."""
 _COINCIDENT = 0.04
 """What a factor costs more that a name of the program has as its value: 1/2 where l1 is 0.5."""
+_TWICE = 2
 _UNLIKE = 0.15
 """What it costs more to add numbers whose names are those of a mass and of a length."""
 _BESIDE_NOTHING = 0.15
@@ -70,6 +71,8 @@ _WHOLE = (
 """Things of which an arm has one."""
 _STEPS = ("T", "T0", "R", "R0", "frame_inertia")
 """Things of which it has one for each joint, which a function of the joint's number returns."""
+_POINTS = ("coordinate", "centre_coordinate", "tool_coordinate", "origin", "centre", "tool_point")
+"""A point of the arm, or one coordinate of it."""
 _OWN = ("cell", "mass", "centre_distance", "Izz", "joint_Izz", "parameter")
 """The arm's own numbers, which do not vary: any value may meet one."""
 _LAYOUTS = ("entries swapped", "rows", "rows swapped", "transposed", "order", "index")
@@ -195,7 +198,7 @@ class Grounds:
         unlike_ = self._adds_unlike(edit.changes[0].new) or self._takes_another_centre(edit)
         more = _UNLIKE if unlike_ or self._spoils_a_number(edit) else 0.0
         more += _BESIDE_NOTHING if self._is_beside_nothing(edit) else 0.0
-        more += _UNLIKE if _doubles(edit) else 0.0
+        more += _UNLIKE if _doubles(edit) or self._takes_a_point_twice(edit) else 0.0
         more -= _AS_PARTS if self._is_as_another_part(edit) else 0.0
         more += _AGREED if id(edit.node) in self.agreed else 0.0
         more += _USED * self._where_it_is_used(edit) + _RENAMED * self._turns_a_renamed(edit)
@@ -238,6 +241,15 @@ class Grounds:
         """Whether an expression was zero wherever it was seen."""
         seen = self.observed.of(node)
         return seen is not None and seen.nothing
+
+    def _takes_a_point_twice(self, edit: ProgramEdit) -> bool:
+        """Whether an edit takes a point's coordinate twice: rather another point is meant."""
+        node, new = edit.node, edit.changes[0].new
+        if edit.kind != "factor" or not isinstance(node, ast.Name) or not self.known:
+            return False
+        twice = isinstance(new, ast.BinOp) and getattr(new.left, "value", None) == _TWICE
+        senses = self._of(node, self.observed) if twice else None
+        return bool(senses) and all(one.what in _POINTS for one in senses or ())
 
     def _spoils_a_number(self, edit: ProgramEdit) -> bool:
         """Whether an edit turns round a number that the robot has as it is typed."""

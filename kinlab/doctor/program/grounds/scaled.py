@@ -80,6 +80,7 @@ class OtherArm:
         whole: whether nothing else of the program can be the first arm's own, so that a program
             that is right is right for this one, too.
         fitting: where numbers of the program are that the first arm has as they are called.
+        noughts: where noughts are, which fit anything.
         odd: whether one is none of the first arm's, while others of its kind are.
     """
 
@@ -87,6 +88,7 @@ class OtherArm:
     ways: tuple[tuple[ProgramEdit, ...], ...]
     whole: bool
     fitting: frozenset[Any] = frozenset()
+    noughts: frozenset[Any] = frozenset()
     odd: bool = False
 
     @cached_property

@@ -140,7 +140,7 @@ class OtherArms:
                 if any(x.of_the_arm and x.part != DATA for x in own)
                 else set()
             )
-            if odd or before.fitting - apart.fitting - put:
+            if odd or before.fitting - apart.fitting - apart.noughts - put:
                 return True  # a name has a number that none has of those that are called so
             if apart.whole and self.at(apart) is not None:
                 return not self.hold_for(apart)

@@ -21,6 +21,7 @@ from kinlab.doctor.program.places import ANGLES, DATA, Here, ProgramEdit, number
 from kinlab.doctor.program.trial import Trial
 from kinlab.fivebar import FiveBar
 from kinlab.model.dh import DHTable
+from kinlab.model.link import Convention
 from kinlab.tolerances import TOLERANCES
 
 _PLAIN = (0.0, 0.5, 1.0, 2.0, 3.0, 4.0)
@@ -33,6 +34,9 @@ _SUMMED = 0.04
 """The same of a number that is a sum of two, in place of one of these."""
 _OTHER_END = 1.06
 """Cost of how far a centre is from the joint for how far it is from its frame."""
+_HALVES = 2
+_AT_CENTRE = 1.08
+"""Cost of where a link's centre is for its length."""
 _OF_POINTS = 1.14
 """Cost of a point's coordinate for a number."""
 _CONSTANT = 1.06
@@ -99,6 +103,10 @@ def of_own_numbers(
             for here in places(part, tree):
                 yield from _missing(here, observed, lengths)
                 yield from _instead_of_zero(here, trial, left_out)
+    to_centres = _to_centres(table, given)
+    for part, tree in enumerate(trial.trees) if to_centres else ():
+        for here in places(part, tree):
+            yield from _at_the_centre(here, observed, to_centres)
     ends = (np.ravel(np.asarray(end)[:3, 3]) for end in (table.tool, table.base))
     arm = {abs(float(x)) for x in (*(x for k in table.links for x in (k.a, k.d)), *chain(*ends))}
     unnamed = [x for x in sorted(arm) if x and not among(x, given)]
@@ -177,6 +185,40 @@ def _from_the_joint(table: DHTable) -> list[float]:
     """How far centres of mass are from their links' joints, along each axis."""
     sums = [np.add((k.a, k.d, k.d), np.ravel(k.com)) for k in table.links]
     return [float(f"{abs(x):.12g}") for x in np.ravel(sums)]
+
+
+def _to_centres(table: DHTable, given: Sequence[float]) -> dict[float, tuple[float, ...]]:
+    """How far from a link's end its centre is, by the link's length, where no number says it.
+
+    Of a frame at the joint it is the distance from there, and not from the end.
+    """
+    found: dict[float, tuple[float, ...]] = {}
+    for link, after in zip(table.links, [*table.links[1:], None], strict=True):
+        com = float(np.ravel(link.com)[0])
+        at_joint = table.convention is Convention.MODIFIED
+        length = abs(after.a if after else 0.0) if at_joint else abs(link.a)
+        way = abs(com) if at_joint else abs(link.a + com)
+        if length and way and not among(way, [*given, length, length / _HALVES]):
+            found[length] = (way,) if at_joint else (way, length - way)
+    return found
+
+
+def _at_the_centre(
+    here: Here, observed: Observed, to_centres: dict[float, tuple[float, ...]]
+) -> Iterator[ProgramEdit]:
+    """Where a link's centre is for its length, which is named: ``L1 - 0.16`` for ``L1``."""
+    node = here.node
+    stored = isinstance(getattr(node, "ctx", None), ast.Store)
+    if stored or not isinstance(node, ast.Name | ast.Attribute | ast.Subscript):
+        return
+    seen = observed.of(node)
+    own = None if seen is None else seen.only
+    for length, (way, *back) in to_centres.items() if own is not None else ():
+        if among(abs(own or 0.0), [length]):
+            new: ast.expr = number(way if (own or 0.0) > 0 else -way)
+            if back and (own or 0.0) > 0:
+                new = ast.BinOp(node, ast.Sub(), number(float(f"{back[0]:.12g}")))
+            yield replace(here.instead(new, "number", _AT_CENTRE), of_the_arm=True)
 
 
 def _of_points(

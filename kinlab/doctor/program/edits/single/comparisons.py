@@ -44,7 +44,7 @@ def of_comparison(here: Here) -> Iterator[ProgramEdit]:
         for other_kind in _other_kinds(letter):
             kind = [ast.Constant(other_kind)]
             yield here.within(node, "comparators", kind, "condition", _KIND)
-        if isinstance(node.ops[0], ast.Eq | ast.NotEq):
+        if isinstance(node.ops[0], ast.Eq | ast.NotEq) and not is_switch(node):
             turned = ast.Eq() if isinstance(node.ops[0], ast.NotEq) else ast.NotEq()
             yield here.within(node, "ops", [turned], "condition", _KIND + 0.03)
         return
@@ -60,6 +60,18 @@ def of_comparison(here: Here) -> Iterator[ProgramEdit]:
         for new in (ast.Eq(), ast.LtE(), ast.GtE()):
             if type(new) is not type(node.ops[0]):
                 yield here.within(node, "ops", [new], "condition", 1.12)
+
+
+def is_switch(test: ast.expr) -> bool:
+    """Whether a condition asks for a setting by its name, ``mode != "static"``, and no kind."""
+    if not isinstance(test, ast.Compare):
+        return False
+    word = getattr(test.comparators[0], "value", None)
+    return isinstance(word, str) and len(word) > _SIGNS and not _other_kinds(word)
+
+
+_SIGNS = 2
+"""The longest word that may be the kind of a joint, whatever it is: ``R``, ``PR``."""
 
 
 def _other_kinds(kind: str) -> list[str]:
