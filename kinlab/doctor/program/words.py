@@ -401,8 +401,9 @@ def _beside(repair: ProgramRepair, trial: Trial) -> str:
     if DATA in (one.part, other.part) or {one.kind, other.kind} & {"order of lines", *_MOVED}:
         return ""
     (old, _new), (also, new) = _pieces(one, trial), _pieces(other, trial)
-    same = one.part == other.part and row_of(one) == row_of(other) and one.kind == other.kind
-    return new if same and old == also else ""
+    same = one.part == other.part and row_of(one) == row_of(other)
+    alike = one.kind == other.kind or (one.kind, other.kind) == ("sign", "transposed")
+    return new if same and alike and old == also else ""
 
 
 def _by_statement(

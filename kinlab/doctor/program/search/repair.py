@@ -271,7 +271,7 @@ class LineSearch:
             found = self.as_named(found)
             if not self.stand or below < np.inf:
                 found = in_company(found, self.likely, SAME, self.trial, _beside)
-            found = self._beside_data(found)
+            found = self._beside_data(self._or_transposed(found, tried))
             if below < np.inf:
                 return found
             if len(self.stand) < _STANDING and (not found or best > _NUMBER):
@@ -401,6 +401,29 @@ class LineSearch:
         rivals = [one for one in same[1:2] if not _add_the_same(first.edits[-1], one.edits[-1])]
         first = replace(first, rivals=tuple(rivals))
         return [first, *(one for one in found if one.edits != first.edits)]
+
+    def _or_transposed(
+        self, found: list[ProgramRepair], tried: list[ProgramEdit]
+    ) -> list[ProgramRepair]:
+        """The first, of another sign, with the transpose in its line that does as well beside it.
+
+        ``-T[0, 1]`` or ``T[1, 0]`` of a turn in the plane, ``-C @ C`` or ``C @ C.T`` of what is
+        skew. Of several it is the one that is written shortest.
+        """
+        first = found[0].edits[-1] if found and not (found[0].rivals or self.stand) else None
+        if first is None or first.kind != "sign" or first.part == DATA:
+            return found
+        turned = (x for x in tried if (x.kind, x.part) == ("transposed", first.part))
+        others: dict[int, ProgramRepair] = {}
+        for edit in turned:
+            if row_of(edit) == row_of(first):
+                self.work.done += self.work.of(edit)
+                with suppress(NoProgramError), self.trial.changed({edit.part}, edit.changes):
+                    repair = self.verdict((edit,))
+                    if repair is not None:
+                        length = sum(len(ast.unparse(one)) for one in self.trial.trees)
+                        others[length] = repair
+        return [_beside(found[0], others[min(others)]), *found[1:]] if others else found
 
     def _beside_data(self, found: list[ProgramRepair]) -> list[ProgramRepair]:
         """The first with a rival in the data, or in a line if it is of the data, as likely as it.
