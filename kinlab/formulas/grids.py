@@ -38,7 +38,9 @@ _MATRIX = re.compile(rf"{_INSIDE}({_TURNED})?", re.DOTALL)
 _WRAPPED = re.compile(
     rf"(?:\\left\s*[(\[.]|[(\[])\s*{_INSIDE}\s*(?:\\right\s*[)\].]|[)\]])({_TURNED})?", re.DOTALL
 )
-_ARRAY = re.compile(r"(?:(?:np|numpy|sp|sympy)\.)?(?:array|Matrix|asarray)\s*\((.*)\)", re.DOTALL)
+_MADE = r"(?:(?:np|numpy|sp|sympy)\.)?(?:array|Matrix|asarray|Vector)"
+_ARRAY = re.compile(rf"{_MADE}\s*\((.*)\)", re.DOTALL)
+_MADE_INSIDE = re.compile(rf"(?<![\w.]){_MADE}\s*(?=\(\s*\[)")
 _DIAGONAL = re.compile(
     r"(?:\\(?:mathrm|operatorname|text)\s*\{\s*diag\s*\}|(?<![A-Za-z])\\?diag)(?=\s*[(\[{\\])"
 )
@@ -67,7 +69,20 @@ def cells(text: str, place: str = "expression", writing: Hand | None = None) -> 
     """
     text = bare(text)
     rows = _one(text, place, writing or hand([text]))
-    return _total(text, place, writing or hand([text])) if rows is None else rows
+    if rows is not None:
+        return rows
+    return _total(_not_made(text), place, writing or hand([text]))
+
+
+def _not_made(text: str) -> str:
+    """``h*[[a, b], [c, d]]`` of ``h*Matrix([[a, b], [c, d]])``."""
+    while found := _MADE_INSIDE.search(text):
+        end = closes(text, found.end())
+        if end < 0:
+            return text
+        inside = text[found.end() + 1 : end]
+        text = f"{text[: found.start()]}{inside}{text[end + 1 :]}"
+    return text
 
 
 def _one(text: str, place: str, writing: Hand) -> Grid | None:

@@ -606,7 +606,7 @@ def explains_another(line: str, lines: list[str]) -> bool:
         lines: all there are.
     """
     name = _joined_up(line.partition("=")[0])
-    pattern = re.compile(rf"(?<![A-Za-z]){re.escape(name)}(?!\d)")
+    pattern = re.compile(rf"(?<![A-Za-z]){re.escape(name)}(?![\d₀-₉])")
     return any(map(pattern.search, _rights(tuple(lines))))
 
 

@@ -632,11 +632,15 @@ def believed(repair: ProgramRepair, search: LineSearch) -> ProgramRepair | None:
     A test that is changed until it never holds says only that its branch is wrong; the robot's own
     g is not to be another; decimals of a rounding and the step of a difference are no formula; and
     what takes a statement's own part away and adds the right one names nothing. A line that writes
-    somewhere else where it does nothing is one too many.
+    somewhere else where it does nothing is one too many. What is put to one sum and taken from
+    another makes a number of two that are there by chance.
     """
     for _statement, own in _by_statement(repair, search.trial):
         if sum(edit.kind == "missing term" for edit in own) > 1:
             return None
+    added = [one for edit in repair.edits for one in _added(edit)]
+    if any(text == other and sign != turned for text, sign in added for other, turned in added):
+        return None
     exact = repair.error <= TOLERANCES.left_of_several or search.asked.differences
     if len(repair.edits) > _PAIR and repair.error > TOLERANCES.left_of_three:
         return None
@@ -650,6 +654,14 @@ def believed(repair: ProgramRepair, search: LineSearch) -> ProgramRepair | None:
     rivals = [believed(one, search) for one in repair.rivals]
     known = tuple(one for one in rivals if one)
     return replace(repair, edits=as_exchanged(edits), rivals=known)
+
+
+def _added(edit: ProgramEdit) -> Iterator[tuple[str, bool]]:
+    """What an edit adds to a sum, or takes from it."""
+    new = edit.changes[0].new
+    more = edit.kind == "missing term" and edit.part != DATA and isinstance(new, ast.BinOp)
+    if more and isinstance(new.op, ast.Add | ast.Sub):
+        yield _text(new.right), isinstance(new.op, ast.Sub)
 
 
 def _needed(repair: ProgramRepair, search: LineSearch) -> bool:
@@ -673,7 +685,9 @@ def _robots_own(edit: ProgramEdit, search: LineSearch) -> bool:
     table = table_of(search.case.robot)
     if edit.part != DATA or edit.numbers is None or table is None:
         return False
-    own = None if edit.place else vocabulary(table).values.get(edit.node)
+    named = vocabulary(table).values
+    own = None if edit.place else named.get(edit.node)
+    own = named.get(f"{edit.node}1") if own is None and table.n == 1 else own  # l of one link
     old, new = edit.numbers
     if own is not None and float(own) == old:
         return True

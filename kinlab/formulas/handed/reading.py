@@ -121,15 +121,19 @@ _MAPLES = re.compile(r":(?=\s*(?:$|\n|[A-Za-z]\w{0,20}(?:\[[\d,\s]{1,5}\])?\s*:=
 """A colon that ends a statement of Maple's."""
 _NAMED = r"\$?\\?[A-Za-zα-ωΑ-Ω]{1,6}_?\{?[\w,]{0,5}\}?\s{0,3}:?=(?!=)"
 _WHERE = re.compile(
-    rf"(?<!\w)(?:avec|con|com|donde|dove|où|onde|где)(?=\s+{_NAMED})", re.IGNORECASE
+    rf"(?<!\w)(?:avec|con|com|donde|dove|où|onde|где|ただし)(?=\s+{_NAMED})", re.IGNORECASE
 )
 _AND = re.compile(rf"(?<=\s)(?:et|y|e|и)\s+(?={_NAMED})")
 """What stands between a formula and what is explained behind it, and between two such."""
 _FULL_STOP = re.compile(r"(?<=\$)\s{0,9}[。．]\s*$")
 _IN_WORDS = re.compile(r"\\text\s*\{\s*([()\[\]])\s*\}")
 """A bracket that is set as words are: ``\\text{(}d_3 = q_3)``."""
+_SPACED = r"(?:\\q?quad|\\[,;: ]|\s){0,4}"
 _FOLLOWS = re.compile(
-    r"\s*(?:(?<![<=>])=>|⇒|⟹)\s*|[,;.]?\s{0,9}(?<!\w)d['’]où\s{0,9}[,:]?\s*|\s*(?:→|⟶|∴)\s*(?=\$?\\?[A-Za-zα-ωΑ-Ω][\w{},₁-₉]{0,12}\s*=)"
+    r"\s*(?:(?<![<=>])=>|⇒|⟹"
+    rf"|{_SPACED}\\(?:Rightarrow|Longrightarrow|implies)(?![A-Za-z]){_SPACED}(?=\\?[A-Za-z]))\s*"
+    r"|[,;.]?\s{0,9}(?<!\w)d['’]où\s{0,9}[,:]?\s*"
+    r"|\s*(?:→|⟶|∴)\s*(?=\$?\\?[A-Za-zα-ωΑ-Ω][\w{},₁-₉]{0,12}\s*=)"
 )
 """What follows from what stands before is an equation of its own."""
 _AT = r"(?!\$?\\?(?:q|theta|vartheta|θ|th)_?\{?[\d₀-₉]?\}?\s{0,9}=\s{0,9}[-+±]?\s?[\dπ\\])"
@@ -138,7 +142,7 @@ _HENCE = re.compile(
     r"(?<=\S)\s{0,9}[.,;]?\s{1,9}(?:hence|so|thus|therefore|then|(?:it\s+follows|we\s+find)\s+that"
     r"|we\s+get|donc|alors|also|daher|somit|folglich|damit|quindi|dunque|luego|entonces|por\s+tanto)"
     rf"\s{{0,9}}[,:]?\s{{1,9}}{_AT}(?={_NAMED})"
-    rf"|(?<=\S)[,，。;；]?\s{{0,9}}(?:因此|所以|于是)[,，]?\s{{0,9}}{_AT}(?={_NAMED})",
+    rf"|(?<=\S)[,，。;；]?\s{{0,9}}(?:因此|所以|于是|したがって|従って|ゆえに|よって)[,，]?\s{{0,9}}{_AT}(?={_NAMED})",
     re.IGNORECASE,
 )
 """What follows, behind what is explained: ``where y = ... . Hence U = ...``."""

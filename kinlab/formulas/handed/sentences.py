@@ -45,7 +45,7 @@ _OPERATOR = re.compile(r"[*/^+=<>]|\\(?:sin|cos|tan|d?frac|sqrt)(?![A-Za-z])")
 _UNIT = re.compile(r"\s*(?:(?:SI|the|units?|of)\s+)*(?:mm|cm|dm|km|m|kg|N|Nm|J|rad|s|deg)\b")
 _GAP = "\0"
 _BETWEEN = re.compile(
-    rf"(?<=\0)\s*[,;:]?\s*\b[{LATIN}]{{1,3}}\b(?=[\s,;:.!?]*\0)|(?:^|(?<=\()|(?<=[.,;:]\s))[{LATIN}]{{1,3}}(?=\s+\0)"
+    rf"(?<=\0)\s*[,;:]?\s*\b[{LATIN}]{{1,3}}\b(?=[\s,;:.!?]*\0)|(?:^|(?<=[(\n])|(?<=[.,;:]\s))[{LATIN}]{{1,3}}(?=\s+\0)"
 )
 """A short word that no list has, between others or behind a comma."""
 _BRACKETS = re.compile(r"\(\s*[\0\s,.;:?!'-]*\0[\0\s,.;:?!'-]*\)|\[\s*\0[\0\s]*\]")
@@ -168,7 +168,7 @@ def _is_word(word: str, text: str, found: re.Match[str]) -> bool:
         return False
     if re.search(rf"(?<![\w.]){re.escape(word)}\s*:?=(?!=)", text):
         return False
-    if not listed and _ends_formula(front):
+    if not listed and not front.endswith("\n") and _ends_formula(front):
         return False  # l2*c12 friction
     if _AND.fullmatch(word) and _ends_formula(front):
         after = _WORD.search(behind)

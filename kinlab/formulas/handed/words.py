@@ -105,7 +105,7 @@ _OTHERWISE = re.compile(
     r"|\bnewton[- ]?(?:milli|centi|zenti)met\w+"
     r"|(?<!no )(?<!pas )(?<!non )\b(?:en|em|in)\s+"
     r"(?:grados|graus|gradi|degrés|stopniach|graden|grader)\b"
-    r"|ただし"
+    r"|ただし(?!\s{0,9}\$?\\?[A-Za-z]\w*\s{0,9}=)"
     r"|\b(?:elbow|shoulder|wrist|ellbogen|coude|codo|gomito)\s+(?:only|nur|seulement|solo)\b"
     r"|\bsign\s+(?:is|would\s+be)\s+(?:opposite|reversed|the\s+other)\b"
     r"|,\s?(?:não|no|pas|non)\s+(?:a|la|le|l['’])\s?(?:potenci|cin[eé]ti|poten[zt]i|énergie|energ)"
@@ -183,6 +183,7 @@ def without_words(text: str, entry: str, place: str) -> str:
         ExpressionError: words that may change what a name means.
     """
     _refuse_meanings(text, entry, place)
+    text = _HEADING.sub("", text)
     spoken = None if "=" in text else _SPOKEN.match(text)
     if spoken and any(not is_program(one) for one in _LONG_WORD.findall(spoken["words"])):
         text = text[spoken.end() :]
@@ -192,6 +193,10 @@ def without_words(text: str, entry: str, place: str) -> str:
     return without_sentences(text, entry)
 
 
+_HEADING = re.compile(
+    r"^\s*(?=[^\n]{0,80}[^\W\d_]{4})[^=\n*/^+\\$]{4,90}[:：][ \t]*\n(?=[^\n]{1,60}=)"
+)
+"""Words on a line of their own, above formulas."""
 _COMMENTS = re.compile(
     r"(?<![:/])//(?!=)([^\n]+)|/\*(.+?)\*/|\(\*(.+?)\*\)"
     r"|(?:^|[ \t\n])#(?![\d{])([^\n]+)",

@@ -21,6 +21,7 @@ _TABLE = (
     (r"dh_poses (?P<k>\d),(?P<x>[123]),4", "[pPord]?<x>0?<k>|[pPord]0?<k><x>"),
     (r"dh_poses (?P<k>\d),:[23],4", "[pPOordt]0?<k>"),
     (r"dh_poses (?P<k>\d),:[23],:[23]", "R0?<k>"),
+    (r"dh_poses 1", "[TH]0?1|A0?1"),
     (r"dh_poses (?P<k>\d)", "[TH]0?<k>|A0<k>"),
     (r"link_transforms (?P<k>\d)", "[TAH]<before><k>|A<k>"),
     (

@@ -9,6 +9,8 @@ import re
 import unicodedata
 from itertools import pairwise
 
+from kinlab.formulas.signs.brackets import parts_at
+
 _RAISED = re.compile(r"[ \t]*\d(?:[ \t]|\d)*")
 _BASE = re.compile(r"[^\W_]|[)\]₀-₉⎠]")
 _DRAWN = re.compile(r"\[([^\[\],;&=\n]*(?:\n[^\[\],;&=\n]*){1,20})\]")
@@ -26,6 +28,13 @@ _TABLE = re.compile(r"(?m)^[ \t]*\|(?P<name>[^|\n]+)\|(?P<value>[^|\n]+)\|[ \t]*
 _RULE = re.compile(r"[-: ]+")
 _TALL = re.compile(r"(?:^|\n)(?P<front>[^\n⎡]*)⎡(?P<rows>[^⎦⎡]*)⎦", re.DOTALL)
 _ROWS = re.compile(r"(?:^|\n)[ \t]*\([^()\n]*(?:\([^()\n]*\)[^()\n]*)*\)[ \t]*(?=\n|$)")
+_BRACKETED_ROWS = re.compile(
+    r"(?P<front>=[ \t]*)(?P<rows>(?:\n[ \t]*\[[^\[\]\n=;]{1,300}\][ \t]*){2,8})(?=\n|$)"
+)
+_BARE_ROWS = re.compile(
+    r"(?P<front>=[ \t]*)(?P<rows>(?:\n(?=[^\n]*,)[^\n=\[\];:&\\]{3,300}){2,8})(?=\n|$)"
+)
+"""Rows below ``J =``, each in brackets of its own or in none."""
 _GLUED = re.compile(r"[^\W_]\d|\d[^\W\d_]|[^\W\d_]_")
 _FEWEST = 4
 """Names with digits apart, of which one reads a scan."""
@@ -65,13 +74,23 @@ def _in_brackets(text: str) -> str:
         inside = _on_one_line("\n".join(line for line in lines if line.strip()))
         return f"{found['front']}[{inside}\n]"
 
-    text = _TALL.sub(drawn, text)
+    text = _BARE_ROWS.sub(_bracketed, _BRACKETED_ROWS.sub(_bracketed, _TALL.sub(drawn, text)))
     rows = [*_ROWS.finditer(text)]
     together = all(one.end() == other.start() for one, other in pairwise(rows))
     if len(rows) < len("ab") or not together:
         return text
     inside = "\n".join(one[0].strip()[1:-1] for one in rows)
     return f"{text[: rows[0].start()]} [{inside}\n]{text[rows[-1].end() :]}"
+
+
+def _bracketed(found: re.Match[str]) -> str:
+    """Rows on lines of their own as one matrix, where all have as many entries."""
+    lines = [line.strip().strip("[],;").strip() for line in found["rows"].strip().split("\n")]
+    commas = all("," in line for line in lines)
+    rows = [parts_at(line, ",") if commas else _APART.split(line) for line in lines]
+    if len({len(row) for row in rows}) > 1 or len(rows[0]) < len("ab"):
+        return found[0]
+    return f"{found['front']}[{'; '.join(', '.join(row) for row in rows)}]"
 
 
 def _on_one_line(text: str) -> str:

@@ -11,8 +11,9 @@ from kinlab.doctor.bytecode.syntax import called, copied, factors, names, nodes,
 from kinlab.doctor.program.edits.chains import chain, joined
 from kinlab.doctor.program.edits.scope.forms import statement_of
 from kinlab.doctor.program.edits.scope.part import Scope
+from kinlab.doctor.program.edits.single.whole import plus
 from kinlab.doctor.program.observed import Observed, Shape
-from kinlab.doctor.program.places import Here, ProgramEdit, number
+from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, number
 
 _RATES = ("w", "o", "W", "O")
 """How names of angular velocities begin."""
@@ -37,6 +38,10 @@ _OF_SUMMANDS = 1.08
 """Cost of the cross product of a rate that is turned and of what is added to it elsewhere."""
 _AS_LEVER = 1.07
 """Cost of a lever more that another product of the statement has."""
+_OUTWARD = 1.1
+"""Cost of a sum over a part of an array for one over all of it."""
+_CHAIN = 1.1
+"""Cost of the rate that the chain rule asks for."""
 _LAST = 0.01
 """What a factor of the last matrix of a product costs more."""
 _FEW = 8
@@ -59,6 +64,7 @@ def of_composites(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdi
             if isinstance(node, ast.Subscript) and _begins(node, _MASSES):
                 yield from _from_there_on(here, scope.observed)
             yield from _next_entry(here, scope.observed)
+        yield from _by_the_chain_rule(here, scope)
         yield from _spread(here, scope)
         yield from _squares(here, scope)
         yield from _about_all_axes(here, scope)
@@ -66,6 +72,10 @@ def of_composites(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdi
     factor = isinstance(op, ast.MatMult)
     if isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Name) and len(shape) == 1:
         yield from _of_list_from_there_on(here, scope)
+    summed = getattr(parent, "attr", "") == "sum" if here.field == "value" else False
+    summed = summed or (isinstance(parent, ast.Call) and called(parent) == "sum")
+    if isinstance(node, ast.Name | ast.Attribute) and summed:
+        yield from _of_a_counter_on(here, scope)
     if shape == _TENSOR and (term or isinstance(parent, ast.List | ast.Tuple)):
         yield from _parallel_axes_of_tensors(here, scope)
     if shape == _TENSOR and (term or factor or isinstance(parent, ast.List | ast.Tuple)):
@@ -235,6 +245,28 @@ def _of_list_from_there_on(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
         rest = ast.Subscript(node.value, ast.Slice(node.slice, None, None), ast.Load())
         total = ast.Call(ast.Name("sum", ast.Load()), [rest], [])
         yield here.instead(total, "missing term", 1.16)
+
+
+def _of_a_counter_on(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """The sum of what is outward of a joint for that of all: ``m[i:].sum()`` for ``m.sum()``."""
+    for name in sorted({*scope.counters} & scope.counting):
+        own = ast.Name(name, ast.Load())
+        for end in (own, plus(own, 1)):
+            for cut in (ast.Slice(end, None, None), ast.Slice(None, end, None)):
+                part = ast.Subscript(here.node, cut, ast.Load())
+                yield here.instead(part, "index", _OUTWARD)
+
+
+def _by_the_chain_rule(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """The rate that an object has beside its value: ``cos(x.v)*x.d`` for ``cos(x.v)``."""
+    node = here.node
+    inner = node.args[0] if isinstance(node, ast.Call) and len(node.args) == 1 else None
+    if not isinstance(inner, ast.Attribute) or called(node) not in ANGLES:
+        return
+    for name, known in scope.attributes.items():
+        if name != inner.attr and known == ():
+            rate = ast.Attribute(inner.value, name, ast.Load())
+            yield here.instead(ast.BinOp(node, ast.Mult(), rate), "missing factor", _CHAIN)
 
 
 def _digits(node: ast.expr) -> str:

@@ -59,8 +59,35 @@ class _Company:
 
 _ACROSS = 0.99
 """Cost of the entry across the diagonal, where all others of a matrix are as those."""
+_CARRIED = 1.06
+"""Cost of what a loop carries on for the factor or the term that it gets at each turn."""
 _NOTHING = 1.05
 """Cost of zeros for what is given beside them."""
+
+
+def _targets(here: Here) -> list[ast.expr]:
+    """What the statement around sets."""
+    line = here.above[-1] if here.above else None
+    lines = [one for one in (*here.above, line) if isinstance(one, ast.Assign | ast.AugAssign)]
+    return [x for one in lines for x in getattr(one, "targets", [getattr(one, "target", None)])]
+
+
+def _carried_on(tree: ast.AST) -> Iterator[tuple[str, str]]:
+    """What a loop puts to what it carries on, and its name: ``u *= np.exp(1j*angle)``."""
+    for node in nodes(tree):
+        name: ast.expr
+        if isinstance(node, ast.AugAssign):
+            name, more, op = node.target, node.value, node.op
+        elif isinstance(node, ast.Assign) and isinstance(node.value, ast.BinOp):
+            name, more, op = node.targets[0], node.value.right, node.value.op
+            if text_of(node.value.left) != text_of(name):
+                continue
+        else:
+            continue
+        kinds = (ast.Call, ast.BinOp, ast.Subscript) if isinstance(op, ast.Add) else (ast.Call,)
+        put = isinstance(op, ast.Add | ast.Mult | ast.MatMult) and isinstance(more, kinds)
+        if isinstance(name, ast.Name) and put:
+            yield text_of(more), name.id
 
 
 class Elsewhere:
@@ -85,6 +112,7 @@ class Elsewhere:
                     for k, one in enumerate(node.args):
                         self._given[called(node), k].setdefault(text_of(one), one)
             self._of_lines(tree)
+        self._carried = {x: y for tree in trial.trees for x, y in _carried_on(tree)}
         self._products = _products(trial, observed)
         self._roles = _roles(trial, observed)
 
@@ -110,6 +138,10 @@ class Elsewhere:
                 beside = observed.of(one) if isinstance(one, ast.Name) and one is not node else None
                 if beside and beside.shape == shape and beside.nothing:
                     yield here.instead(one, "name", _NOTHING)
+        may = bool(self._carried) and isinstance(node, ast.Call | ast.BinOp | ast.Subscript)
+        name = self._carried.get(text_of(node)) if may else None
+        if name and name not in {x for to in _targets(here) for x in names(to)}:
+            yield here.instead(ast.Name(name, ast.Load()), "name", _CARRIED)
         if is_nothing(node) and isinstance(here.parent, ast.Assign):
             yield from _of_the_mirror(here)
         for new in _across(here):

@@ -434,6 +434,10 @@ class Grounds:
                 for one in node.value.elts:
                     self._right_alone(one, observed)
                     self.partly |= {id(one)} if self._at_a_pass(one, observed) else set()
+            if isinstance(node.value, ast.Call) and isinstance(node.value.func, ast.Name):
+                for one in node.value.args:  # what is put into an object
+                    if isinstance(one, ast.BinOp):
+                        self._right_alone(one, observed)
             senses = self._of(node.value, observed)
             good = senses is not None
             if not good and self._at_a_pass(node.value, observed):

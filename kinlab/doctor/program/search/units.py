@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from kinlab.arrays import Array
 from kinlab.doctor.program.grounds.evidence import Grounds
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit
@@ -23,6 +24,9 @@ from kinlab.doctor.program.search.recognised import QUANTITY, Recognised, as_num
 from kinlab.doctor.program.search.work import Work
 from kinlab.doctor.program.trial import FailedError, NoProgramError, Trial, quietly
 from kinlab.doctor.program.variants import Variants
+from kinlab.engine import dynamics
+from kinlab.model.robot import Robot
+from kinlab.tolerances import TOLERANCES
 
 _OFTEN = 2
 """Calls of a function from which on it is worth while to ask it alone."""
@@ -36,7 +40,7 @@ _STEP = 0.02
 Ranks = list[int | None]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Unit:
     """A function of a program, and something that it was asked.
 
@@ -65,8 +69,10 @@ class Units:
 
     def __init__(self, asked: Asked, observed: Observed, evidence: Grounds, work: Work) -> None:
         self.trial, self.work = asked.trial, work
+        self.robot = asked.case.robot
         self.known = Recognised(evidence)
         self.wrong: dict[int, Unit] = {}
+        self.there: dict[Unit, list[Array]] = {}
         self.before: dict[int, Ranks] = {}
         if not self.known.anything or len(self.trial.trees) == 1:
             return
@@ -119,7 +125,38 @@ class Units:
         except FailedError:
             return []
         apart = isinstance(answer, tuple | list) and as_numbers(answer) is None
+        if not apart and self._is_the_engines(unit, answer):
+            return [QUANTITY]
         return [self.known.rank(one) for one in (answer if apart else [answer])[:_LONGEST]]
+
+    def _is_the_engines(self, unit: Unit, answer: Any) -> bool:
+        """Whether a function of states answers what the engine has for those that it was given.
+
+        The columns of M are torques for accelerations of 1, its entries energies for rates of 1.
+        """
+        if unit not in self.there:
+            self.there[unit] = _of_the_engine(self.robot, [*unit.given, *unit.named.values()])
+        value = as_numbers(answer)
+        near = TOLERANCES.same_relation
+        return value is not None and any(
+            value.shape == one.shape and bool(np.abs(value - one).max() <= near * np.abs(one).max())
+            for one in self.there[unit]
+        )
+
+
+def _of_the_engine(robot: Any, given: Sequence[Any]) -> list[Array]:
+    """Energies, or torques, for the positions, rates and accelerations that a function is given."""
+    states = [one for one in map(as_numbers, given) if one is not None and one.ndim]
+    if not isinstance(robot, Robot) or any(one.shape != (robot.n,) for one in states):
+        return []
+    if len(states) == len(("q", "v")):
+        energy = np.asarray(dynamics.kinetic_energy(robot, *states))
+        return [energy, 2 * energy]
+    if len(states) == len(("q", "v", "a")):
+        q, v, a = states
+        torques = np.asarray(dynamics.inverse_dynamics(robot, q, v, a))
+        return [torques, torques - np.asarray(dynamics.gravity_torques(robot, states[0]))]
+    return []
 
 
 def _asked_often(trial: Trial, state: tuple[Any, ...]) -> dict[int, list[Unit]]:

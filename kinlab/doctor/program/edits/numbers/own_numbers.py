@@ -41,6 +41,8 @@ _OF_POINTS = 1.14
 """Cost of a point's coordinate for a number."""
 _CONSTANT = 1.06
 """Cost of the part of a joint's coordinate that does not move, and of gravity."""
+_WITH_ANOTHER = 1.1
+"""Cost of what is carried with what else is."""
 _MOVED, _LEFT_OUT = 1.1, 4
 """Cost of a transform that is missing; lengths of which one may be its."""
 _TRANSFORMS = ((4, 4), (3, 3))
@@ -102,6 +104,7 @@ def of_own_numbers(
         for part, tree in enumerate(trial.trees):
             for here in places(part, tree):
                 yield from _missing(here, observed, lengths)
+                yield from _with_another(here, kinds)
                 yield from _instead_of_zero(here, trial, left_out)
     to_centres = _to_centres(table, given)
     for part, tree in enumerate(trial.trees) if to_centres else ():
@@ -285,6 +288,18 @@ def _missing(here: Here, observed: Observed, lengths: Sequence[float]) -> Iterat
             for more in (ast.Add(), ast.Sub()):
                 edit = here.instead(ast.BinOp(node, more, number(length)), "missing term", 1.24)
                 yield replace(edit, of_the_arm=True)
+
+
+def _with_another(here: Here, kinds: dict[str, list[float]]) -> Iterator[ProgramEdit]:
+    """A mass, or a moment of inertia, and another link's: ``0.055 + 0.0008`` for ``0.055``."""
+    node = here.node
+    typed_in = node.value if isinstance(node, ast.Constant) else None
+    value = abs(typed_in) if isinstance(typed_in, float) else 0.0
+    for known in (kinds["mass"], kinds["moment"]) if value else ():
+        for other in known[:_MOST] if among(value, known) else ():
+            if not among(value, [other]):
+                new = ast.BinOp(node, ast.Add(), number(other))
+                yield replace(here.instead(new, "missing term", _WITH_ANOTHER), of_the_arm=True)
 
 
 def _instead_of_zero(here: Here, trial: Trial, lengths: Sequence[float]) -> Iterator[ProgramEdit]:

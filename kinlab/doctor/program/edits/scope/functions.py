@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from itertools import accumulate
 from math import pi
 from types import FunctionType, ModuleType
 from typing import Any
@@ -16,6 +17,11 @@ from kinlab.doctor.program.trial import Trial
 
 ARCS = ("arccos", "acos", "arcsin", "asin", "arctan2", "atan2", "arctan", "atan")
 PI = member(named("np"), "pi")
+
+
+def accumulating(space: dict[str, Any]) -> str:
+    """What the program calls :func:`itertools.accumulate`; empty where it does not."""
+    return next((name for name, held in space.items() if held is accumulate), "")
 
 
 def has_numpy(space: dict[str, Any]) -> bool:

@@ -32,6 +32,8 @@ class Knowledge:
         functions, methods: the program's own, each with how many arguments it asks for.
         called: the names of these, and of its methods.
         has_numpy: whether numpy is called ``np``.
+        summed_from: the entries of which names are the sums: ``w = v[0] + v[1]``.
+        accumulating: what itertools' function of sums up to each is called.
         shapes: names of numbers, by their shapes.
         lists: names of lists, by the shapes of their entries.
         levels: names of numbers that stay the same, with these.
@@ -112,6 +114,8 @@ class Knowledge:
         self.uncalled = [*idle.not_called(trial)]
         self._angular = {name for name in ANGLES if callable(space.get(name))}
         self.has_numpy = functions.has_numpy(space)
+        self.summed_from = pieces.summed_from(tree)
+        self.accumulating = functions.accumulating(space)
         self.pi = functions.pi_of(space)
         self.ranges = [copied(node) for node in calls if called(node) == "range"]
         self.cross = functions.cross_of(calls, self.observed, space)

@@ -6,7 +6,7 @@ import ast
 from collections.abc import Iterator, Mapping, Sequence
 
 from kinlab.doctor.bytecode.syntax import copied, nodes
-from kinlab.doctor.program.edits.scope.forms import entry, named
+from kinlab.doctor.program.edits.scope.forms import entry, named, summands
 from kinlab.doctor.program.observed import Observed, Shape
 
 Pieces = dict[Shape, dict[str, ast.expr]]
@@ -44,6 +44,19 @@ def unit_matrices(pieces: Pieces) -> Iterator[Sized]:
     """The unit matrices of the sizes of the matrices that occur."""
     for size in _SQUARES & pieces.keys():
         yield size, ast.parse(f"np.eye({size[0]})", mode="eval").body
+
+
+def summed_from(tree: ast.AST) -> dict[str, list[ast.expr]]:
+    """The entries of which names are the sums."""
+    found: dict[str, list[ast.expr]] = {}
+    for line in nodes(tree):
+        if not isinstance(line, ast.Assign) or not isinstance(line.value, ast.BinOp):
+            continue
+        name, terms = line.targets[0], summands(line.value)
+        entries: list[ast.expr] = [one for one in terms if isinstance(one, ast.Subscript)]
+        if isinstance(name, ast.Name) and len(entries) > 1:
+            found[name.id] = entries
+    return found
 
 
 def counted(lists: Mapping[str, Shape], counters: Sequence[str]) -> Iterator[Sized]:

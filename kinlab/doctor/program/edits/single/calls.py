@@ -123,6 +123,8 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
         wholes = [getattr(one, "value", one) for one in node.args]
         yield here.within(node, "args", wholes, "loop", 1.08)
     yield from _other_function(here, name)
+    if name == "list" and len(node.args) == 1 and scope.accumulating:
+        yield from _accumulated(here, scope.accumulating)
     yield from _of_a_copy(here, scope, observed)
     if name in ("arctan", "atan") and len(node.args) == 1:
         yield from _of_both_sides(here, scope, name)
@@ -281,6 +283,24 @@ def _other_function(here: Here, name: str) -> Iterator[ProgramEdit]:
         for other in ("ones", "zeros"):
             filled = ast.Call(ast.Attribute(node.func.value, other, ast.Load()), [shape], [])
             yield here.instead(filled, "function", 1.2)
+
+
+def _accumulated(here: Here, name: str) -> Iterator[ProgramEdit]:
+    """Sums up to each for a list of what is summed; sums from each on for those up to it."""
+    node, own = here.node.args[0], ast.Name(name, ast.Load())
+    if called(node) != name if isinstance(node, ast.Call) else True:
+        sums = ast.Call(own, [node], [])
+        yield here.within(here.node.args, 0, sums, "function", 1.1)
+        return
+    back = ast.Slice(None, None, number(-1))
+    first = node.args[0]
+    back_already = isinstance(first, ast.Call) and called(first) == "reversed"
+    turned = first.args[0] if back_already else None
+    turned = turned or ast.Call(ast.Name("reversed", ast.Load()), [first], [])
+    sums = ast.Call(node.func, [turned, *node.args[1:]], node.keywords)
+    listed = ast.Call(here.node.func, [sums], [])
+    yield here.instead(listed, "direction", 1.1)
+    yield here.instead(ast.Subscript(listed, back, ast.Load()), "direction", 1.1)
 
 
 def _range(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

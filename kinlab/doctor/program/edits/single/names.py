@@ -32,6 +32,8 @@ _COUNTERS = 1.08
 """Cost of one loop's counter for another's."""
 _NUMBERED = 1.07
 """Cost of a name for another that differs from it by a number."""
+_ADDEND = 1.06
+"""Cost of one of two that a name is the sum of: the joint's rate for the link's."""
 _IN_LINE = 1.12
 """Cost of a name for another that stands in the same line."""
 
@@ -91,6 +93,8 @@ def _entries_beside(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     for _text, entry in scope.simple(()):
         if isinstance(entry, ast.Subscript) and root(entry) in read:
             yield here.instead(entry, "name", _ENTRY)
+    for entry in scope.summed_from.get(here.node.id, ()):
+        yield here.instead(entry, "name", _ADDEND)
 
 
 def _is_a_centre_of_another(here: Here, scope: Scope, name: str) -> bool:
