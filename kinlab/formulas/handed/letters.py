@@ -35,6 +35,8 @@ _IN_PARENTHESES = re.compile(r"_\(\s*([A-Za-z0-9](?:[A-Za-z0-9 ,]{0,6}[A-Za-z0-9
 _DOTTED = re.compile("\\(\\s?([A-Za-z\u03b1-\u03c9])(_?[\\w{}₁-₉]{0,4})\\s?\\)\\s?([\u0307\u0308])")
 """A dot of Word's, behind what it stands above."""
 _SUBSCRIPT = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+_RUSSIAN_UNIT = re.compile(r"(?<=[\d$)] )(Н|кг|Дж|рад)(?:[·*⋅ ]?(м))?(?![а-яё\w])")
+_UNITS = {"Н": "N", "кг": "kg", "Дж": "J", "рад": "rad"}
 _SUPERSCRIPT = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -50,6 +52,7 @@ def plain_letters(text: str, place: str) -> str:
     if text.isascii():
         return text
     text = _DOTTED.sub(r"\1\3\2", text)
+    text = _RUSSIAN_UNIT.sub(lambda found: _UNITS[found[1]] + (" m" if found[2] else ""), text)
     text = _MATHEMATICAL.sub(lambda found: unicodedata.normalize("NFKC", found[0]), text)
     text = text.translate(_UNSEEN).translate(_PLAIN)
     text = _FRAME.sub(lambda found: f"^{unicodedata.normalize('NFKC', found[1])}", text)

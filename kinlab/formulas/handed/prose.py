@@ -83,11 +83,13 @@ _CONDITION = re.compile(
 )
 _WORKED_OUT = re.compile(
     r"[\d./]*\s*(?:\\?(?:arc|a?tan|a?cos|a?sin|sqrt|operatorname|[dt]?frac|left)|[*(^]"
-    r"|(?:theta|θ|q)(?!\s*[d'1-9₁-₉]*\s*=))"
+    r"|[lmI]c?\d|(?:theta|θ|q)(?!\s*[d'1-9₁-₉]*\s*=))"
 )
 """What goes on behind a number as a formula: ``theta = 2 arctan ...``."""
 _IN_CHAIN = re.compile(
-    r"=(?:[^,;，；。:=\nA-Za-z]|(?<!\d)\.|(?<![A-Za-z])(?:sin|cos|tan|sqrt|pi|d?t?frac|[A-Za-z])(?![A-Za-z])){1,400}$"
+    r"=(?:[^,;，；。:=\nA-Za-z]|(?<!\d)\."
+    r"|(?<![A-Za-z])(?:(?:sin|cos|tan|sqrt|pi|[dt]?frac|partial|left|right|cdot){1,4}|[A-Za-z])"
+    r"(?![A-Za-z])){1,400}$"
 )
 """What stands between two signs of equality of a chain: no word, and nothing that ends it."""
 _OPERATION = re.compile(r"[-+*/^(\d]|sin|cos")

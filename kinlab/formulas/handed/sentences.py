@@ -73,7 +73,8 @@ _ALIGNED = re.compile(
 )
 _NAME = re.compile(
     r"\s*&?\s*(?:det\s*\(?\s*J\s*\)?(?:\(\w+\))?"
-    r"|(?:(?:\{\s?\}\s?)?(?:[_^]\{?\s?\d\s?\}?\s?){1,2})?\\?[A-Za-zα-ωΑ-Ω][\w\\{}'₀-₉ ̇̈^,]*"
+    r"|(?:(?:\{\s?\}\s?)?(?:[_^]\{?\s?\d\s?\}?\s?){1,2}(?=\\?\{?[TAHR]))?"
+    r"\\?[A-Za-zα-ωΑ-Ω][\w\\{}'₀-₉ ̇̈^,]*"
     r"(?:\s*\([^()]{0,30}\)|\[[\d,\[\]]+\])?"
     r"|\\(?:det|dot|ddot|mathrm|text|boldsymbol|mathbf)[^=]{1,40})\s*"
 )
@@ -141,7 +142,8 @@ def _marked(text: str) -> str:
     text = "".join([*out, text[last:]])
     if _GAP not in text:
         return text
-    text = _BETWEEN.sub(_GAP, text)
+    for _again in range(_SHORT):
+        text = _BETWEEN.sub(_GAP, text)
     return _BRACKETS.sub(_GAP, text)
 
 

@@ -14,7 +14,7 @@ from typing import Any
 
 CHINESE = "\u4e00-\u9fff\u3040-\u30fa\u30fc-\u30ff"
 CYRILLIC = "\u0400-\u04ff"
-LATIN = f"A-Za-zÀ-ÖÙ-öù-ÿąčćďěęłńňřšśťůžźőű{CYRILLIC}"
+LATIN = f"A-Za-zÀ-ÖÙ-öù-ÿąčćďěęłńňřšśťůžźőűİıŞşĞğ{CYRILLIC}"
 """Letters of words, for patterns; without those that are signs of mathematics (ø, ż)."""
 BEHIND = "behind"
 """In an entry's place: what is said of the names in a formula."""

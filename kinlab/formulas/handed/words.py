@@ -183,14 +183,14 @@ def without_words(text: str, entry: str, place: str) -> str:
         ExpressionError: words that may change what a name means.
     """
     _refuse_meanings(text, entry, place)
-    text = _HEADING.sub("", text)
     spoken = None if "=" in text else _SPOKEN.match(text)
     if spoken and any(not is_program(one) for one in _LONG_WORD.findall(spoken["words"])):
         text = text[spoken.end() :]
     found = _HEAD.match(text)
     if found and _is_name(found[1], entry) and "=" not in text:
         text = f"{found[1]} = {text[found.end() :]}"
-    return without_sentences(text, entry)
+    plain = without_sentences(text, entry)
+    return _HEADING.sub("", text) if plain == text else plain
 
 
 _HEADING = re.compile(
@@ -214,6 +214,8 @@ _ROUNDED = re.compile(
     r"rounded|gerundet|arrondie?s?|redondead[oa]s?|arrotondat[oiae]", re.IGNORECASE
 )
 """What is said of numbers."""
+_A_WORD = 9
+"""Letters that no name has."""
 _SMALL_WORDS = (
     r"\b(?:the|of|from|for|is|are|in|by|with|and|as|see|to|only|without|der|die|das|ist|sind|von|vom|aus"
     r"|im|mit|und|nur|ohne|siehe|la|le|les|el|du|de|des|del|della|est|es)\b"
@@ -235,7 +237,8 @@ def without_remark_behind(text: str, place: str) -> str:
         words = re.findall(r"[^\W\d_]{3,}", inside)
         small = words and re.search(_SMALL_WORDS, inside, re.IGNORECASE)
         long = [word for word in words if len(word) > len("sin") and not is_program(word)]
-        told = small or len(long) > 1 or _ROUNDED.fullmatch(inside)
+        told = small or len(long) > 1 or len(max(long, default="")) >= _A_WORD
+        told = told or _ROUNDED.fullmatch(inside)
         if not told or _NO_WORDS.search(inside) or not _PLAIN_WORDS.fullmatch(inside):
             continue  # (alpha beta gamma) may be a factor
         if _OTHERWISE.search(inside) or _MORE.search(inside):

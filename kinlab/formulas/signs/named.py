@@ -29,7 +29,7 @@ _TABLE = (
         f"[prscPR]?<x>{_CENTRE}?<k>|[prscPR]{_CENTRE}?<k><x>",
     ),
     (r"com_positions (?P<k>\d)(?:,:[23])?", f"[prscPR]{_CENTRE}?<k>"),
-    (r"christoffel (?P<i>\d),(?P<j>\d),(?P<k>\d)", "(?:[DdcC]|Gamma)(?:<i><j><k>)?"),
+    (r"christoffel (?P<i>\d),(?P<j>\d),(?P<k>\d)", "(?:[DdcC]|Gamma)(?:<i>(?:<j><k>|<k><j>))?"),
     (r"mass_matrix_dot (?P<i>\d),(?P<j>\d)", "[MDHBmdb]dot<i><j>"),
     (r"mass_matrix_dot", "[MDHB]dot"),
     (r"jacobian_dot (?P<i>\d),(?P<j>\d)", "Jdot<i><j>"),

@@ -42,6 +42,8 @@ _SINE = re.compile(
     r"\\operatorname\s*\{\s*(sen|tg)\s*\}|\\(sen|tg)(?![A-Za-z])"
     r"|(?<![A-Za-z\\])(sen|tg)(?=\s*(?:[(²^]|\\left|\\?theta|θ|q_?\d))"
 )
+_EQ = re.compile(r"^\s*(?:sp\.|sympy\.)?Eq\(\s*([A-Za-z]\w*)\s*,\s*(\S.*)\)\s*$", re.DOTALL)
+"""An equation of sympy's."""
 _ONE_BASED = re.compile(
     r"(?:#|%|//)[^\n]*\b(?:1-based|one-based|from\s+1|ab\s+1|Maple|MATLAB|Octave|Julia)\b",
     re.IGNORECASE,
@@ -64,6 +66,7 @@ def of_packages(text: str) -> str:
     text = _MATHEMATICAS.sub(_of_mathematica, text)
     if _ONE_BASED.search(text):
         text = _ENTRY.sub(lambda found: "".join(filter(None, found.groups())), text)
+    text = _EQ.sub(r"\1 = \2", text)
     text = _OF_TYPST.sub(_of_typst, text)
     if "\\" in text:
         text = _DISPLAY.sub(lambda found: f"\n\\[{found[2]}\\]", text)
