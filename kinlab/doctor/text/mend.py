@@ -348,8 +348,13 @@ def _in_parentheses(text: str) -> bool:
     return text.startswith("(") and closes(text) == len(text) - 1
 
 
+_INNER_SIGN = re.compile(r"[*/(]\s*-")
+
+
 def _signs_in_front(text: str) -> str:
     """The text with a sign inside a product in front of its term: l2*-s12 as -l2*s12."""
+    if not _INNER_SIGN.search(text):
+        return text
     try:
         root = ast.parse(text, mode="eval").body
     except SyntaxError:

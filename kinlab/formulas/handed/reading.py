@@ -80,7 +80,7 @@ _WRENCH = re.compile(
 """The tool's force and moment by their parts, in their order: ``F = [Fx, Fy, Nz]``."""
 _LAW = re.compile(
     r"^\s*\$?(?:\\tau|tau|τ)\s*=\s*J\s?(?:ᵀ|\^\s?(?:T|\{\s?T\s?\}|\\top)|['’]|\.T)\s?[*@]?\s?[FfWwh]"
-    r"\s*[:：]\s*(?=\S)"
+    r"(?:\s*[:：]\s*|[ \t]*\n\s*)(?=\S)"
 )
 """What static torques are, in front of them: ``τ = Jᵀ F : tau1 = ...``."""
 _CONSTANT = re.compile(
@@ -108,13 +108,18 @@ _OF_TIME = re.compile(r"(?<![\w.])(?:q|th|theta|θ)\[\s*[1-9]\s*\]\s*\(\s*t\s*\)
 """Maple's ``theta[2](t)``: as nothing else has it, all indices count from 1."""
 _PLACE = re.compile(r"(?<![\w.])([A-Za-zθ]\w*)\[\s*([1-9])\s*\](?:\s*\(\s*t\s*\))?")
 _ANY_ZERO = re.compile(r"\[\s*0\s*[\],]|\*\*")
-_BOLD = re.compile(r"\*\*([A-Za-zÀ-ž\u4e00-\u9fff][^*\n=+/]{0,60}[:.：])\*\*")
+_BOLD = re.compile(
+    r"\*\*([A-Za-zÀ-ž\u4e00-\u9fff][^*\n=+/]{0,60}[:.：])\*\*"
+    r"|(?<=\n)\*\*([A-Za-zÀ-ž\u4e00-\u9fff][^*\n=+/]{2,60})\*\*(?=[ \t]*\n)"
+)
 """Markdown's ``**Answer:**``."""
 _BOLD_SIDES = re.compile(
     r"(?<!\S)\*\*([A-Za-z]\w{0,8})\*\*(?=\s*=)"
     r"|(?<==)\s{0,9}\*\*(?=[^\s*])([^\n]{1,400}?)(?<=[^\s*])\*\*(?=\s*(?:\n|$))"
 )
 """A bold name, or a bold end of a chain: ``**M33** = ... = **m3*l3^2/3**``."""
+_BULLET = re.compile(r"(?<=\n)[ \t]{0,9}[-*•·][ \t]{1,9}(?=\$?\\?[A-Za-z][^\n]{0,40}=)")
+"""What begins a line of a list."""
 _GREEK_ANGLE = re.compile(r"(?<![A-Za-z])(sin|cos|tan)([θϑφϕ](?:[₁-₉]|[1-9])?)(?![\w₁-₉²³(^])")
 """A function with its angle, and nothing between: ``cosθ2``."""
 _MAPLES = re.compile(r":(?=\s*(?:$|\n|[A-Za-z]\w{0,20}(?:\[[\d,\s]{1,5}\])?\s*:=))")
@@ -185,7 +190,9 @@ def as_formula(
     text = of_packages(text)
     text = _HENCE.sub("\n", without_prompts(without_gaps(text)))
     text = _BOLD_SIDES.sub(lambda found: found[1] or f" {found[2]}", text)
-    text = _BOLD.sub(r"\1", written_out(with_definitions(text), place))
+    text = _BULLET.sub("", text)
+    text = written_out(with_definitions(text), place)
+    text = _BOLD.sub(lambda found: found[1] or f"{found[2]}:", text)
     text = _GREEK_ANGLE.sub(r"\1(\2)", text) if "\\" not in text else text
     text = _ACCENTED.sub(lambda letter: unicodedata.normalize("NFC", letter[0]), text)
     text = _FULL_STOP.sub("", text)

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import re
 
+from kinlab.formulas.signs.brackets import closes
+
 _GROUP = r"\{((?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*)\}"
 _OF_SI = (
     r"\{(?:\\(?:kilogram|kilo\s?\\gram|metre|meter|second|radian|newton|joule|watt|per|squared|square"
@@ -37,6 +39,7 @@ _OF_TYPST = re.compile(
     r"(?<![A-Za-z.\\])dot(?P<twice>\.double)?\(\s{0,9}(?P<name>[A-Za-z]+)(?P<k>_?\{?\d?\}?)\s{0,9}\)"
     r"|(?<![A-Za-z\\])frac\((?P<above>[^(),=]{1,40}),(?P<below>[^(),=]{1,40})\)"
 )
+_MATRIX_OF_TYPST = re.compile(r"(?<![A-Za-z\\])mat\((?=[^()]*(?:\([^()]*\)[^()]*){0,40};)")
 _PRINTED = re.compile(r"^\s*tex\([^()\n]*\)\s*[;$]\s*")
 _SINE = re.compile(
     r"\\operatorname\s*\{\s*(sen|tg)\s*\}|\\(sen|tg)(?![A-Za-z])"
@@ -68,6 +71,11 @@ def of_packages(text: str) -> str:
         text = _ENTRY.sub(lambda found: "".join(filter(None, found.groups())), text)
     text = _EQ.sub(r"\1 = \2", text)
     text = _OF_TYPST.sub(_of_typst, text)
+    while found := _MATRIX_OF_TYPST.search(text):
+        end = closes(text, found.end() - 1)
+        if end < 0:
+            break
+        text = f"{text[: found.start()]}[{text[found.end() : end].strip()}]{text[end + 1 :]}"
     if "\\" in text:
         text = _DISPLAY.sub(lambda found: f"\n\\[{found[2]}\\]", text)
         text = _NUMBER.sub(lambda found: found[1] or found[2], text)
