@@ -238,7 +238,7 @@ def without_remark_behind(text: str, place: str) -> str:
         small = words and re.search(_SMALL_WORDS, inside, re.IGNORECASE)
         long = [word for word in words if len(word) > len("sin") and not is_program(word)]
         told = small or len(long) > 1 or len(max(long, default="")) >= _A_WORD
-        told = told or _ROUNDED.fullmatch(inside)
+        told = told or bool(_ROUNDED.fullmatch(inside))
         if not told or _NO_WORDS.search(inside) or not _PLAIN_WORDS.fullmatch(inside):
             continue  # (alpha beta gamma) may be a factor
         if _OTHERWISE.search(inside) or _MORE.search(inside):

@@ -137,6 +137,7 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     summand = isinstance(op, ast.Add | ast.Sub)
     product = isinstance(op, ast.MatMult)
     entry = isinstance(parent, ast.List | ast.Tuple)
+    entry = entry or (isinstance(parent, ast.Dict) and here.holder is parent.values)
     whole = isinstance(parent, ast.Assign | ast.AugAssign | ast.Return) or entry
     whole = whole or (isinstance(parent, ast.IfExp) and here.field != "test")
     kept = isinstance(parent, ast.Call) and called(parent) in ("append", "float")

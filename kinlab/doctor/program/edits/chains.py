@@ -85,6 +85,8 @@ def _is_square(node: ast.expr) -> bool:
 
 def times(number: ast.expr, node: ast.expr) -> ast.BinOp:
     """A number times something: of a product of vectors in front, ``0.5*w @ I @ w``."""
+    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):  # -2*h of -h
+        return times(ast.UnaryOp(ast.USub(), number), node.operand)
     first, factors = chain(node, (ast.MatMult,))
     front, rest = chain(first, (ast.Mult,))
     if not factors or not isinstance(front, _NAMES):

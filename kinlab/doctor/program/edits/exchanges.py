@@ -19,6 +19,9 @@ _ANGLES = 1.13
 """Cost of the joint before in every angle of a statement."""
 _OF_ROWS = 1.15
 """Cost of one row for another wherever a statement reads it."""
+_PAIR = 2
+_OWNERS = 1.08
+"""Cost of two objects for one another in a whole expression."""
 _FRONTS = 1.1
 """Cost of what stands in front of two terms, exchanged."""
 _TURNED = 1.02
@@ -31,6 +34,23 @@ _OF_TWO = 1.12
 """Cost of the other function and the other sign of one term."""
 _OF_TERMS, _TERMS = 1.16, 12
 """Cost of another term of a statement for one, and of how many such at most."""
+
+
+def of_owners(here: Here) -> Iterator[ProgramEdit]:
+    """Two objects for one another: ``self.R @ o.p + self.p`` for ``o.R @ self.p + o.p``."""
+    node, parent = here.node, here.parent
+    given = isinstance(parent, ast.Call) and here.holder is parent.args
+    if not given and not isinstance(parent, ast.Assign | ast.Return):
+        return
+    held = [one.value for one in nodes(node) if isinstance(one, ast.Attribute)]
+    owners = sorted({one.id for one in held if isinstance(one, ast.Name)} - {"np", "math"})
+    if len(owners) != _PAIR:
+        return
+    turned = copied(node)
+    for one in nodes(turned):
+        if isinstance(one, ast.Name) and one.id in owners:
+            one.id = owners[1 - owners.index(one.id)]
+    yield here.instead(turned, "names exchanged", _OWNERS)
 
 
 def of_statement(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:

@@ -410,7 +410,8 @@ class _Reader:
                 alike.add(label[0])
             elif some and link is not None and len(label[2]) < 2 and not _among(every, one.value):
                 of_a_drive = _among(kept, one.value) or bool(_close(self.rotors, one.value).any())
-                strange += [] if of_a_drive else [label]
+                plain = abs(one.value) == 1.0 and one.place.part != DATA  # R = diag([-1.0, -1, 1])
+                strange += [] if of_a_drive or plain else [label]
         centres = {label[0] for label in strange if self._are_centres(label[0], named)}
         for name in (label[0] for label in strange if label[0] not in centres):
             same = alike if len(name) > 1 or name in "lmij" else alike & {name}

@@ -239,10 +239,16 @@ def _line(node: ast.stmt, space: dict[str, Any]) -> _Line | None:
     """A statement as a line; None if it is not one that only computes."""
     if isinstance(node, ast.ClassDef):
         return _of_class(node, space)
-    if not _computes(node):
+    if not _computes(node) or _of_text(node, space):
         return None
     down = isinstance(node, ast.Assign | ast.AnnAssign) and _written_down(node.value, space)
     return _Line(node, frozenset(_set_by(node)), frozenset(names(node)), down)
+
+
+def _of_text(node: ast.stmt, space: dict[str, Any]) -> bool:
+    """Whether numbers are read from a text: what they are is then looked at, and not the text."""
+    known = {*names(node)}
+    return "float" in known and any(isinstance(space.get(name), str) for name in known)
 
 
 def _computes(node: ast.stmt) -> bool:

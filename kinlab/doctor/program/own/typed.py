@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import ast
 import inspect
+import re
 from collections.abc import Sequence
 from types import FunctionType
 from typing import Any
 
-from kinlab.doctor.bytecode.syntax import called, targets_of
+import numpy as np
+
+from kinlab.doctor.bytecode.syntax import called, names, targets_of
 from kinlab.doctor.program.own.loaded import setting
 
 _WRAPPING = ("array", "asarray", "float64", "tuple", "list")
@@ -34,12 +37,33 @@ def line_of(function: FunctionType, name: str, place: Sequence[Any]) -> int | No
     value = _given(found[0], name)
     if value is None:
         return found[0].lineno
+    if place and (row := _row_of_text(module, value, function.__globals__.get(name), place[0])):
+        return row
     for key in place:
         inner = _entry(value, key)
         if inner is None:
             break
         value = inner
     return value.lineno
+
+
+_A_NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?![\w.])")
+
+
+def _row_of_text(module: ast.Module, value: ast.expr, held: Any, row: Any) -> int | None:
+    """The line of a row of numbers that are read from a text; None where it is not sure."""
+    used, texts = {*names(value)}, dict[str, ast.Constant]()
+    for line in module.body:
+        text = line.value if isinstance(line, ast.Assign) else None
+        if isinstance(text, ast.Constant) and isinstance(text.value, str):
+            texts |= dict.fromkeys(setting(line) & used, text)
+    if len(texts) != 1 or not isinstance(row, int):
+        return None
+    (text,) = texts.values()
+    lines = enumerate(str(text.value).split("\n"), text.lineno)
+    rows = [k for k, line in lines if line.lstrip()[:1] != "#" and len(_A_NUMBER.findall(line)) > 1]
+    whole = isinstance(held, list | tuple | np.ndarray) and len(held) == len(rows)
+    return rows[row] if whole and 0 <= row < len(rows) else None
 
 
 def _given(line: ast.Assign | ast.AnnAssign, name: str) -> ast.expr | None:
