@@ -330,3 +330,119 @@ def test_what_one_sum_gets_and_another_loses_is_no_cause() -> None:
     found = kl.diagnose("scara", "kinetic_energy", written(wrong))
     assert not found.agrees
     assert not any(c.kinds == ("missing term", "missing term") for c in found.causes)
+
+
+OBJECTS = """
+import numpy as np
+
+class Turn:
+    def __init__(self, R, p):
+        self.R, self.p = R, p
+    def __matmul__(self, other):
+        return Turn(self.R @ other.R, self.R @ other.p + self.p)
+
+def f(q):
+    T, out = Turn(np.eye(2), np.zeros(2)), []
+    for t, l in zip(q, (0.5, 0.4, 0.25)):
+        c, s = np.cos(t), np.sin(t)
+        R = np.array([[c, -s], [s, c]])
+        out.append((T @ Turn(R, np.zeros(2)) @ Turn(np.eye(2), np.array([l/2, 0.0]))).p)
+        T = T @ Turn(R, np.zeros(2)) @ Turn(np.eye(2), np.array([l, 0.0]))
+    return np.array([[p[0], p[1], 0.0] for p in out])
+"""
+BY_KEYS = """
+import math
+import numpy as np
+
+def f(q):
+    h = 1.5*0.5*0.4*math.sin(q[1])
+    slopes = {(0, 0, 1): -2*h, (0, 1, 1): -h, (1, 0, 1): -h}
+    c = np.zeros((2, 2, 2))
+    for i, j, k in np.ndindex(2, 2, 2):
+        c[i, j, k] = (slopes.get((i, j, k), 0.0) + slopes.get((i, k, j), 0.0)
+                      - slopes.get((j, k, i), 0.0))/2
+    return c
+"""
+IN_TEXT = '''
+import numpy as np
+
+TABLE = """
+# a        alpha  d
+0.0        90     0.089159
+-0.425     0      0.0
+-0.39225   0      0.0
+0.0        90     0.10915
+0.0        -90    0.09465
+0.0        0      0.0823
+"""
+ROWS = [[float(x) for x in line.split()] for line in TABLE.strip().split("\\\\n")[1:]]
+
+def f(q):
+    T = np.diag([-1.0, -1.0, 1.0, 1.0])
+    for (a, al, d), t in zip(ROWS, q):
+        c, s = np.cos(t), np.sin(t)
+        ca, sa = np.cos(np.deg2rad(al)), np.sin(np.deg2rad(al))
+        T = T @ np.array([[c, -s*ca, s*sa, a*c], [s, c*ca, -c*sa, a*s], [0, sa, ca, d],
+                          [0, 0, 0, 1]])
+    return T
+'''.replace("\\\\n", "\\n")
+WEIGHTS = """
+import numpy as np
+a, d = [0, -0.425, -0.39225, 0, 0, 0], [0.089159, 0, 0, 0.10915, 0.09465, 0.0823]
+al = np.array([1, 0, 0, 1, -1, 0])*np.pi/2
+m = [3.7, 8.393, 2.275, 1.219, 1.219, 0.1879]
+r = np.array([[0, 0, 0], [0.145, 0, 0.13585], [0.14225, 0, 0.01615],
+              [0, -0.093, 0], [0, 0.09465, 0], [0, 0, -0.0823]])
+
+def f(q):
+    R, p = np.diag([-1.0, -1, 1]), np.zeros(3)
+    axes, origins, centres = [], [], []
+    for i in range(6):
+        axes.append(R[:, 2])
+        origins.append(p)
+        c, s, ca, sa = np.cos(q[i]), np.sin(q[i]), np.cos(al[i]), np.sin(al[i])
+        p = p + R @ np.array([a[i]*c, a[i]*s, d[i]])
+        R = R @ np.array([[c, -s*ca, s*sa], [s, c*ca, -c*sa], [0, sa, ca]])
+        centres.append(p + R @ r[i])
+    G = np.zeros(6)
+    for j in range(6):
+        for i in range(j, 6):
+            G[j] += m[i]*9.81*np.cross(axes[j], centres[i] - origins[j])[2]
+    return G
+"""
+
+
+@pytest.mark.parametrize(
+    ("robot", "quantity", "text", "right", "slip"),
+    [
+        (
+            "planar3r",
+            "com_positions",
+            OBJECTS,
+            "self.R @ other.p + self.p",
+            "other.R @ self.p + other.p",
+        ),
+        ("planar2r", "christoffel", BY_KEYS, "(0, 0, 1): -2*h", "(0, 0, 1): -h"),
+    ],
+)
+def test_objects_and_what_stands_under_keys(robot, quantity, text, right, slip, tmp_path):
+    told_in_its_line(robot, quantity, text, right, slip, tmp_path / "hand.py")
+
+
+def test_a_number_in_a_text_is_told_in_the_text_s_line(tmp_path) -> None:
+    wrong = with_slips(IN_TEXT, [("90     0.10915", "90     0.09465")])
+    (tmp_path / "hand.py").write_text(wrong)
+    told = kl.diagnose("ur5", "fk", written(wrong, tmp_path / "hand.py")).sentence
+    assert wrong.split("\n")[8].startswith("0.0        90     0.09465")
+    assert "line 9, ROWS[3][2], a number is wrong: 0.09465 should be 0.10915" in told
+
+
+def test_signs_on_a_diagonal_are_no_lengths(tmp_path) -> None:
+    """``R = diag([-1.0, -1, 1])`` was held for a length that is none of the arm's."""
+    slips = [("8.393", "8.933"), ("centres[i] - origins[j]", "centres[i] - origins[i]")]
+    wrong = with_slips(WEIGHTS, slips)
+    (tmp_path / "hand.py").write_text(wrong)
+    found = kl.diagnose("ur5", "gravity_torques", written(wrong, tmp_path / "hand.py"))
+    assert "8.933 should be 8.393" in found.sentence
+    assert "centres[i] - origins[j]" in found.sentence
+    assert sorted(found.causes[0].kinds) == ["index", "number"]
