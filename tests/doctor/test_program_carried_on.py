@@ -412,9 +412,35 @@ def f(q):
 """
 
 
+OF_C = """
+from math import cos, sin
+import numpy as np
+
+def product(A, B, out):
+    for i in range(3):
+        for j in range(3):
+            out[3*i + j] = A[3*i]*B[j] + A[3*i + 1]*B[3 + j] + A[3*i + 2]*B[6 + j]
+
+def step(A, angle, reach):
+    A[0] = cos(angle); A[1] = -sin(angle); A[2] = reach*cos(angle)
+    A[3] = sin(angle); A[4] = cos(angle); A[5] = reach*sin(angle)
+    A[6] = 0.0; A[7] = 0.0; A[8] = 1.0
+
+def f(q):
+    T, A = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0], [0.0]*9
+    for n in range(3):
+        out = [0.0]*9
+        step(A, q[n], (0.5, 0.4, 0.25)[n])
+        product(T, A, out)
+        T = out
+    return np.array([T[2], T[5], T[0], T[3]])
+"""
+
+
 @pytest.mark.parametrize(
     ("robot", "quantity", "text", "right", "slip"),
     [
+        ("planar3r", "planar_pose", OF_C, "A[5] = reach*sin(angle)", "A[5] = reach*cos(angle)"),
         (
             "planar3r",
             "com_positions",

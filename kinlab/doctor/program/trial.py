@@ -34,6 +34,7 @@ from kinlab.doctor.program.own.plain import (
     alike,
     attributes,
     closed,
+    fills,
     functions_in,
     made_like,
     written,
@@ -150,7 +151,8 @@ class Trial:
         self._touched: set[int] = set()
         self._made = [self._compiled(k) for k in range(len(self.trees))]
         self._placed: list[Any] = [*self._made]
-        self._remembering = [_remembering(one) for one in self._made]
+        pairs = zip(self._made, program.parts, strict=True)
+        self._remembering = [f if fills(part.tree) else _remembering(f) for f, part in pairs]
         for k, one in enumerate(self._made):
             self.place(k, one)
 

@@ -315,7 +315,7 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Progra
         yield from of_operator(here, observed, index or whole)
         if isinstance(node.op, ast.FloorDiv) and not _counts_in(here):
             yield here.within(node, "op", ast.Div(), "whole division", 0.97)
-        yield from exchanges.of_owners(here)
+        yield from exchanges.of_owners(here) if shape else ()
         yield from exchanges.of_terms(here, observed)
         yield from exchanges.of_the_row_above(here, scope) if isinstance(node.op, SUMS) else ()
         yield from of_links(here, observed) if isinstance(node.op, ast.MatMult) else ()
