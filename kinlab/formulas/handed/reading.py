@@ -118,8 +118,8 @@ _BOLD_SIDES = re.compile(
     r"|(?<==)\s{0,9}\*\*(?=[^\s*])([^\n]{1,400}?)(?<=[^\s*])\*\*(?=\s*(?:\n|$))"
 )
 """A bold name, or a bold end of a chain: ``**M33** = ... = **m3*l3^2/3**``."""
-_BULLET = re.compile(r"(?<=\n)[ \t]{0,9}[-*•·][ \t]{1,9}(?=\$?\\?[A-Za-z][^\n]{0,40}=)")
-"""What begins a line of a list."""
+_BULLET = re.compile(r"(?<=\n)[ \t]{0,9}[-*•·][ \t]{1,9}(?=\$\\?[A-Za-z][^\n]{0,40}=)")
+"""What begins a line of a list, where no minus may stand."""
 _GREEK_ANGLE = re.compile(r"(?<![A-Za-z])(sin|cos|tan)([θϑφϕ](?:[₁-₉]|[1-9])?)(?![\w₁-₉²³(^])")
 """A function with its angle, and nothing between: ``cosθ2``."""
 _MAPLES = re.compile(r":(?=\s*(?:$|\n|[A-Za-z]\w{0,20}(?:\[[\d,\s]{1,5}\])?\s*:=))")

@@ -270,6 +270,9 @@ class _Reader:
             may = self._alike(one) if one.value else []
             if may and (one.alone or own or one.given):
                 given.append((one, label, may))
+                # the h of a difference, the same as a moment of inertia
+                called = bool(kinds_called(label[0]))
+                self.whole = self.whole and (called or not may_be_step(one.value))
             elif own or (may and id(place.node) in summed):
                 self.whole = False
             elif may:

@@ -295,6 +295,7 @@ def _with_another(here: Here, kinds: dict[str, list[float]]) -> Iterator[Program
     node = here.node
     typed_in = node.value if isinstance(node, ast.Constant) else None
     value = abs(typed_in) if isinstance(typed_in, float) else 0.0
+    value = value if value > TOLERANCES.may_be_step else 0.0
     for known in (kinds["mass"], kinds["moment"]) if value else ():
         for other in known[:_MOST] if among(value, known) else ():
             if not among(value, [other]):
