@@ -472,3 +472,33 @@ def test_signs_on_a_diagonal_are_no_lengths(tmp_path) -> None:
     assert "8.933 should be 8.393" in found.sentence
     assert "centres[i] - origins[j]" in found.sentence
     assert sorted(found.causes[0].kinds) == ["index", "number"]
+
+
+FILLED = """
+import numpy as np
+
+def put(out, x):
+    WAY
+
+def along(out, angle):
+    put(out, np.array([np.cos(angle), np.sin(angle)]))
+
+def f(q):
+    p, e, g = np.zeros(2), np.zeros(2), np.zeros(2)
+    along(e, q[0])
+    along(g, q[0] + q[1])
+    put(p, 0.5*e)
+    put(p, 0.4*g)
+    return p
+"""
+
+
+@pytest.mark.parametrize("way", ["out += x", "out[:] = out + x", "np.add(out, x, out=out)"])
+def test_what_fills_its_arguments_by_what_it_calls_is_run_each_time(way, tmp_path) -> None:
+    """``along`` was taken for a function that gives nothing: a second sign had to be wrong."""
+    wrong = with_slips(
+        FILLED.replace("WAY", way), [("along(g, q[0] + q[1])", "along(g, q[0] - q[1])")]
+    )
+    found = kl.diagnose("planar2r", "planar_pose[:2]", written(wrong, tmp_path / "hand.py"))
+    assert found.causes[0].kinds == ("sign",)
+    assert "should be `along(g, q[0] + q[1])`" in found.sentence

@@ -34,7 +34,6 @@ from kinlab.doctor.program.own.plain import (
     alike,
     attributes,
     closed,
-    fills,
     functions_in,
     made_like,
     written,
@@ -151,8 +150,7 @@ class Trial:
         self._touched: set[int] = set()
         self._made = [self._compiled(k) for k in range(len(self.trees))]
         self._placed: list[Any] = [*self._made]
-        pairs = zip(self._made, program.parts, strict=True)
-        self._remembering = [f if fills(part.tree) else _remembering(f) for f, part in pairs]
+        self._remembering = [_remembering(one) for one in self._made]
         for k, one in enumerate(self._made):
             self.place(k, one)
 
@@ -523,22 +521,26 @@ def _class_of(value: Any) -> type:
 
 
 def _remembering(function: FunctionType) -> Any:
-    """A part that no edit reaches: its answers are kept, by what it was asked."""
+    """A part that no edit reaches: its answers are kept, by what it was asked.
+
+    What fills its arguments, itself or by what it calls, is run each time: ``C[4*i + j] = acc``.
+    """
     known: dict[Any, Any] = {}
+    fills = False
     if function.__code__.co_flags & inspect.CO_GENERATOR or function.__code__.co_name == "<module>":
         return function  # what it gives is used up; what it does is done each time
 
     def remembered(*asked: Any, **named: Any) -> Any:
-        try:
-            key = (*map(_key, asked), *((name, _key(one)) for name, one in named.items()))
-            hash(key)
-        except TypeError:
+        nonlocal fills
+        key = None if fills else _keys(asked, named)
+        if key is None:
             return function(*asked, **named)
         if key not in known:
             if len(known) >= _REMEMBERED:
                 known.clear()
             answer = function(*asked, **named)
-            if isinstance(answer, Iterator):
+            fills = fills or _keys(asked, named) != key
+            if fills or isinstance(answer, Iterator):
                 return answer
             known[key] = answer
         return _again(known[key])
@@ -557,6 +559,16 @@ def _again(value: Any) -> Any:
     if type(value) in (tuple, list):
         return made_like(value, map(_again, value))
     return copy.deepcopy(value)
+
+
+def _keys(asked: Sequence[Any], named: Mapping[str, Any]) -> tuple[Any, ...] | None:
+    """What a part was asked; None where nothing is kept of it."""
+    try:
+        key = (*map(_key, asked), *((name, _key(one)) for name, one in named.items()))
+        hash(key)
+    except TypeError:
+        return None
+    return key
 
 
 def _key(value: Any, deep: int = 0) -> Any:

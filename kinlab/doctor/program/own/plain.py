@@ -179,18 +179,6 @@ def remembers(tree: ast.FunctionDef, function: FunctionType, begun: frozenset[st
     return False
 
 
-def fills(tree: ast.FunctionDef) -> bool:
-    """Whether a function puts something into what it is given, as in C: ``C[4*i + j] = acc``."""
-    given = {one.arg for one in nodes(tree.args) if isinstance(one, ast.arg)}
-    filled: list[ast.AST] = []
-    for node in nodes(tree):
-        if isinstance(node, ast.Subscript | ast.Attribute) and isinstance(node.ctx, ast.Store):
-            filled.append(node)
-        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
-            filled += [node.func.value] if node.func.attr in _KEEPING else []
-    return any(_root(one) in given for one in filled)
-
-
 def _root(node: ast.AST) -> str | None:
     """The name that an expression begins with."""
     while isinstance(node, ast.Attribute | ast.Subscript):
