@@ -118,17 +118,17 @@ _RATE = re.compile(
 )
 _JACOBIAN = re.compile(r"J(?:(?:omega|ω)([xyz]?\d?)|(?:var)?(?:phi|φ|theta|θ))")
 _AXIS_LAST = re.compile(rf"[prsPR]({_CENTRE}?)(\d)([xyz])")
-_END = r"\{?(\d|[eEn]|ee|EE|tcp|TCP)\}?"
+_END = r"(?P<end>\{?(?:\d|[eEn]|ee|EE|tcp|TCP)\}?)"
 _LETTER = r"\\?\{?(?P<letter>[RTAHpPdo])\}?"
 _ABOVE = r"\^\{?(?P<base>\d)\}?"
-_BELOW = rf"_(?P<end>{_END.replace('(', '(?:')})"
+_BELOW = rf"_{_END}"
 _IN_FRAMES = tuple(
     re.compile(rf"(?:\{{\}})?{one}")
     for one in (
         rf"{_LETTER}{_ABOVE}{_BELOW}",
         rf"{_LETTER}{_BELOW}{_ABOVE}",
-        rf"{_LETTER}_\{{?(?P<base>0)\}}?\^(?P<end>{_END.replace('(', '(?:')})",
-        rf"{_ABOVE}{_LETTER}{_BELOW.replace('_', '_?', 1)}",
+        rf"{_LETTER}_\{{?(?P<base>0)\}}?\^{_END}",
+        rf"{_ABOVE}{_LETTER}_?{_END}",
         rf"{_ABOVE}{_BELOW}{_LETTER}",
         rf"{_BELOW}{_ABOVE}{_LETTER}",
     )

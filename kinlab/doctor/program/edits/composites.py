@@ -72,8 +72,8 @@ def of_composites(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdi
     factor = isinstance(op, ast.MatMult)
     if isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Name) and len(shape) == 1:
         yield from _of_list_from_there_on(here, scope)
-    summed = getattr(parent, "attr", "") == "sum" if here.field == "value" else False
-    summed = summed or (isinstance(parent, ast.Call) and called(parent) == "sum")
+    method = here.field == "value" and getattr(parent, "attr", "") == "sum"
+    summed = method or (isinstance(parent, ast.Call) and called(parent) == "sum")
     if isinstance(node, ast.Name | ast.Attribute) and summed:
         yield from _of_a_counter_on(here, scope)
     if shape == _TENSOR and (term or isinstance(parent, ast.List | ast.Tuple)):

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import called, copied, names, nodes, text_of
+from kinlab.doctor.bytecode.syntax import called, copied, names, nodes, targets_of, text_of
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import (
@@ -65,11 +65,10 @@ _NOTHING = 1.05
 """Cost of zeros for what is given beside them."""
 
 
-def _targets(here: Here) -> list[ast.expr]:
-    """What the statement around sets."""
-    line = here.above[-1] if here.above else None
-    lines = [one for one in (*here.above, line) if isinstance(one, ast.Assign | ast.AugAssign)]
-    return [x for one in lines for x in getattr(one, "targets", [getattr(one, "target", None)])]
+def _is_set_around(name: str, here: Here) -> bool:
+    """Whether the statement around sets what is called so."""
+    lines = [one for one in here.above if isinstance(one, ast.Assign | ast.AugAssign)]
+    return any(name in names(target) for one in lines for target in targets_of(one))
 
 
 def _carried_on(tree: ast.AST) -> Iterator[tuple[str, str]]:
@@ -140,7 +139,7 @@ class Elsewhere:
                     yield here.instead(one, "name", _NOTHING)
         may = bool(self._carried) and isinstance(node, ast.Call | ast.BinOp | ast.Subscript)
         name = self._carried.get(text_of(node)) if may else None
-        if name and name not in {x for to in _targets(here) for x in names(to)}:
+        if name and not _is_set_around(name, here):
             yield here.instead(ast.Name(name, ast.Load()), "name", _CARRIED)
         if is_nothing(node) and isinstance(here.parent, ast.Assign):
             yield from _of_the_mirror(here)

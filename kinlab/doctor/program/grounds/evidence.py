@@ -248,8 +248,8 @@ class Grounds:
         if edit.kind != "factor" or not isinstance(node, ast.Name) or not self.known:
             return False
         twice = isinstance(new, ast.BinOp) and getattr(new.left, "value", None) == _TWICE
-        senses = self._of(node, self.observed) if twice else None
-        return bool(senses) and all(one.what in _POINTS for one in senses or ())
+        senses = (self._of(node, self.observed) if twice else None) or ()
+        return bool(senses) and all(one.what in _POINTS for one in senses)
 
     def _spoils_a_number(self, edit: ProgramEdit) -> bool:
         """Whether an edit turns round a number that the robot has as it is typed."""

@@ -215,11 +215,11 @@ def _at_the_centre(
     if stored or not isinstance(node, ast.Name | ast.Attribute | ast.Subscript):
         return
     seen = observed.of(node)
-    own = None if seen is None else seen.only
-    for length, (way, *back) in to_centres.items() if own is not None else ():
-        if among(abs(own or 0.0), [length]):
-            new: ast.expr = number(way if (own or 0.0) > 0 else -way)
-            if back and (own or 0.0) > 0:
+    own = (None if seen is None else seen.only) or 0.0
+    for length, (way, *back) in to_centres.items() if own else ():
+        if among(abs(own), [length]):
+            new: ast.expr = number(way if own > 0 else -way)
+            if back and own > 0:
                 new = ast.BinOp(node, ast.Sub(), number(float(f"{back[0]:.12g}")))
             yield replace(here.instead(new, "number", _AT_CENTRE), of_the_arm=True)
 
@@ -294,11 +294,11 @@ def _with_another(here: Here, kinds: dict[str, list[float]]) -> Iterator[Program
     """A mass, or a moment of inertia, and another link's: ``0.055 + 0.0008`` for ``0.055``."""
     node = here.node
     typed_in = node.value if isinstance(node, ast.Constant) else None
-    value = abs(typed_in) if isinstance(typed_in, float) else 0.0
-    value = value if value > TOLERANCES.may_be_step else 0.0
-    for known in (kinds["mass"], kinds["moment"]) if value else ():
-        for other in known[:_MOST] if among(value, known) else ():
-            if not among(value, [other]):
+    if not isinstance(typed_in, float) or abs(typed_in) <= TOLERANCES.may_be_step:
+        return
+    for known in (kinds["mass"], kinds["moment"]):
+        for other in known[:_MOST] if among(abs(typed_in), known) else ():
+            if not among(abs(typed_in), [other]):
                 new = ast.BinOp(node, ast.Add(), number(other))
                 yield replace(here.instead(new, "missing term", _WITH_ANOTHER), of_the_arm=True)
 
