@@ -48,7 +48,8 @@ _TIED = 5
 """Slips of one entry that are kept as alternatives."""
 _TURNS, _SHARE = 6, 0.01
 """Steps in which a number is found, and the share by which it is moved for its slope."""
-_LOST, _MISSING = "missing factor", "missing term"
+_LOST, _MISSING, _FACTOR = "missing factor", "missing term", "factor"
+_NUMBER = re.compile(r"(?<![\w.])\d[\d.]*(?![\w.])")
 _RATE = re.compile(r"qd{1,2}\d+")
 _FUNCTIONS = {"sin", "cos", "tan"}
 _UNDONE = {"sign", "transposed", "row order", "inverse", "rotation transposed", "joint order"}
@@ -348,13 +349,17 @@ def _is_simpler(slip: Slip, others: list[Slip], line: Line) -> bool:
     of_name = not any(map(line.turns, lost))
     whole = line.text.text == name
     lacks = slip.kinds == (_MISSING,) and _lacks(slip, line)
+    halved = slip.kinds == (_FACTOR,) and _numbers(new) > _numbers(line.text.symbols[name])
+    typed = _numbers(line.text.text)
 
     def beaten(one: Slip) -> bool:
         if len(slip.kinds) == len(one.kinds):
             if lacks and one.kinds == (_MISSING,):
                 return True
-            if whole and one.kinds in (("missing term",), ("factor",)):
+            if whole and one.kinds in (("missing term",), (_FACTOR,)):
                 return True
+            if halved and one.kinds == (_FACTOR,) and _numbers(one.corrected) < typed:
+                return False  # of -2*h the 2 that does not belong, and not h/2
             both = slip.kinds == one.kinds == (_LOST,) and of_name
             old = {*words_in(one.replaced[0])} - _FUNCTIONS if one.replaced else set()
             itself = old == {name} and one.kinds != ("sign",)
@@ -362,6 +367,11 @@ def _is_simpler(slip: Slip, others: list[Slip], line: Line) -> bool:
         return len(slip.kinds) < len(one.kinds)
 
     return all(map(beaten, others))
+
+
+def _numbers(text: str) -> int:
+    """How many numbers are typed in a formula."""
+    return len(_NUMBER.findall(text))
 
 
 def _lacks(slip: Slip, line: Line) -> bool:

@@ -1081,7 +1081,7 @@ _VECTORS = (
     "statics_tool"
 )
 _MATRICES = "mass_matrix coriolis_matrix jacobian jacobian_tool jacobian_spatial fk planar_jacobian"
-LONG = {*_MATRICES.split(), *_VECTORS.split()}
+LONG = {*_MATRICES.split(), *_VECTORS.split(), "christoffel"}
 TWO = {*"MHBJTRC", "Jv", "Jw", "coriolis_coefficients", *_MATRICES.split()}
 """Quantities of two indices, whose one column is no vector."""
 _SPEED_SQUARED = re.compile(r"\\?\|?v(?:_\{?\w{1,3}\}?)?\|?\s*(?:(?:\^|\*\*)\s*\{?\s*2\s*\}?|²)")

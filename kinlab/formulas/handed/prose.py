@@ -147,6 +147,25 @@ _OTHER_AXES = (
         re.IGNORECASE,
     ),
 )
+_TOOL = r"(?:end[ -]?effectors?|tool(?:[ -]?(?:tip|point|frame))?|tip|tcp|hand|gripper)"
+_WHAT = r"(?:positions?|coordinates?|locations?|velocity|accelerations?|jacobians?)"
+_WHICH = rf"\b{_WHAT}\s+(?:of|for)\s+(?:the\s+)?"
+_OF_THE_TOOL = re.compile(
+    rf"{_WHICH}{_TOOL}\b"
+    rf"|\b{_TOOL}(?:'s)?\s+(?:position|coordinates?|location|velocity|acceleration|jacobian)\b"
+    r"|\b(?:position|lage|ort|koordinaten?|geschwindigkeit|beschleunigung)\s+(?:des|der)\s+"
+    r"(?:werkzeugs?|werkzeugspitze|end-?effektors?|tcp|spitze|greifers?)\b"
+    r"|(?:末端(?:执行器)?|手爪|工具)的?(?:位置|坐标|速度|加速度)",
+    re.IGNORECASE,
+)
+_OF_A_CENTRE = re.compile(
+    rf"{_WHICH}(?:cent(?:re|er)s?\s+of\s+(?:mass|gravity)|com|cog)\b|质心的?(?:位置|坐标|速度)"
+    r"|\b(?:position|lage|ort|koordinaten?|geschwindigkeit)\s+des\s+(?:massen)?schwerpunkt(?:e?s)?\b",
+    re.IGNORECASE,
+)
+_OTHER_POINTS = {"com_": _OF_THE_TOOL}
+_OTHER_POINTS |= dict.fromkeys(("fk", "jacobian", "planar_"), _OF_A_CENTRE)
+"""Words of another point, by how entries begin."""
 _SCALED = re.compile(
     r"\bin (?:mm|cm|dm|km|inch(?:es)?|feet|grams?|tonnes?|(?:milli|centi)met(?:re|er)s?"
     r"|(?:milli|zenti)metern?|gramm)\b|\bk?N\s?[·.*]?\s?(?:mm|cm)\b|\bkN\s?m?\b|毫米|厘米|英寸",
@@ -257,8 +276,16 @@ def of_other_axes(text: str, entry: str) -> str:
     """What says that numbers of the base's axes are in others: ``J in the end-effector frame``."""
     if not _IN_THE_BASE.match(entry):
         return ""
-    every = (kind.search(prose) for prose in outside_formulas(text) for kind in _OTHER_AXES)
-    return next((found[0].strip()[:_MOST] for found in every if found), "")
+    every = (*outside_formulas(text), flat(text))
+    found = (said for prose in every for kind in _OTHER_AXES if (said := kind.search(prose)))
+    return next((one[0].strip()[:_MOST] for one in found), "")
+
+
+def of_another_point(text: str, entry: str) -> str:
+    """What says that a centre of mass is the tool, or the tool one: ``position of the tip``."""
+    own = next((said for begin, said in _OTHER_POINTS.items() if entry.startswith(begin)), None)
+    found = own.search(flat(text)) if own else None
+    return found[0].strip()[:_MOST] if found else ""
 
 
 def of_another_part(text: str, entry: str) -> str:

@@ -187,7 +187,7 @@ def as_formula(
     text = _AND_SO_ON.sub("", as_typed(text))
     unjudged = _("the step {words!r} was not judged")
     steps = [unjudged.format(words=one[0].strip("=& ")) for one in STEP.finditer(text)]
-    text = of_packages(text)
+    text, label = _without_label(of_packages(text))
     text = _HENCE.sub("\n", without_prompts(without_gaps(text)))
     text = _BOLD_SIDES.sub(lambda found: found[1] or f" {found[2]}", text)
     text = _BULLET.sub("", text)
@@ -231,9 +231,29 @@ def as_formula(
     text, said = without_constant(without_units(text, entry, place), entry)
     return (
         of_column(text, entry, place),
-        "; ".join(filter(None, (numbered, marks, said, tried, *steps))),
+        "; ".join(filter(None, (label, numbered, marks, said, tried, *steps))),
         doubts,
     )
+
+
+_BELOW = r"(?:\w|\{[^={}]{0,20}(?:\{[^={}]{0,9}\}[^={}]{0,9}){0,2}\})"
+_LABEL = re.compile(
+    r"^(?P<begin>\s*\$*\s*)(?P<label>"
+    rf"(?:\{{\s*\}}\s*\^\s*{_BELOW}\s*)(?:_\s*{_BELOW}\s*)?[vawVpr](?![A-Za-z])(?:_\s*{_BELOW})?"
+    rf"|[vawpr]\s*_\s*\{{\s*\w{{1,2}}\s*,\s*[xyz]\s*\}}"
+    rf"|[\[(]\s*\\?[A-Za-z]{{1,6}}(?:\s*[_^]\s*{_BELOW}){{1,3}}\s*[\])]\s*_\s*{_BELOW}"
+    r")(?P<equals>\s*&?\s*=(?!=))(?=[^=]*$)"
+)
+"""A name in brackets, or with its frame and axis: ``{}^2v_{2,y} =``, ``[J_{v_{c2}}]_{21} =``."""
+
+
+def _without_label(text: str) -> tuple[str, str]:
+    """The formula without a name in front that no list has, and what is said of that."""
+    found = _LABEL.match(text)
+    if found is None:
+        return text, ""
+    said = _("the left side {words!r} was not read").format(words=found["label"].strip())
+    return f"{found['begin']}{text[found.end() :].lstrip()}", said
 
 
 _CHECK = re.compile(

@@ -12,7 +12,13 @@ import re
 from kinlab.formulas.handed.prose import MATHS, is_condition
 from kinlab.formulas.handed.vocabulary import CHINESE, LATIN, is_listed, is_program
 from kinlab.formulas.signs.brackets import parts_at
-from kinlab.formulas.typed import begins_with, explains_another, is_name_of, says_what_it_is
+from kinlab.formulas.typed import (
+    begins_with,
+    explains_another,
+    is_name,
+    is_name_of,
+    says_what_it_is,
+)
 
 _PROGRAM = re.compile(r"\b(?:def|lambda|return|import)\b|```|^\s*`")
 _FONT = re.compile(r"\\(?:text|textrm|textit|textbf|mbox|textnormal|hbox)\s*\{([^{}]*)\}")
@@ -243,6 +249,7 @@ def _of_entry(pieces: list[str], entry: str) -> list[str]:
         mine = formulas or last or [one for one in pieces if "=" in one]
     if len(mine) > 1:  # "L = T - V" says what it is, and the next line what it comes to
         mine = [one for one in mine if not says_what_it_is(one.partition("=")[2])] or mine
+        mine = [one for one in mine if not is_name(one.partition("=")[2])] or mine  # d12 = d21
     if len({_plain(one) for one in mine}) != 1:
         return []
     kept = [mine[0]]

@@ -16,6 +16,7 @@ from kinlab.formulas.handed.prose import (
     flat,
     moment_elsewhere,
     of_another_part,
+    of_another_point,
     of_other_axes,
     outside_formulas,
 )
@@ -340,7 +341,7 @@ def _refuse_meanings(text: str, entry: str, place: str) -> None:
     other = (
         _of_another_coordinate(text, entry) or moment_elsewhere(text) or of_other_axes(text, entry)
     )
-    other = other or _of_another_quantity(text, entry)
+    other = other or of_another_point(text, entry) or _of_another_quantity(text, entry)
     if said_otherwise := other or of_another_part(text, entry):
         said = N_("{words!r} beside the formula is not what it is asked for; leave it out")
         raise refused(place, said, words=said_otherwise)

@@ -99,13 +99,18 @@ _HALF_SQUARED = 1.09
 """Cost of half a length in a square, where it stands whole."""
 
 
+_POSE, _INVERTED = (4, 4), 1.06
+"""Shape of a pose, and the cost of its inverse for it."""
+
+
 def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     """A sign, a transpose, a factor, a term more: where an expression stands for itself."""
     node, parent = here.node, here.parent
     zero = isinstance(node, ast.Constant) and node.value == 0
     literal = isinstance(node, ast.List | ast.Tuple)
     written = isinstance(parent, ast.Subscript) and isinstance(parent.ctx, ast.Store)
-    if shape and not literal and not written and not isinstance(parent, ast.Attribute):
+    of_method = isinstance(parent, ast.Attribute) and parent.attr != "dot"  # J.dot(w) is a product
+    if shape and not literal and not written and not of_method:
         yield from _matrices(here, scope, shape)
     row = len(shape) == 1 and isinstance(node, ast.Name) and scope.has_numpy
     multiplied = isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.Mult)
@@ -319,6 +324,16 @@ def _leftmost(node: ast.expr) -> ast.expr:
     return node
 
 
+def _inverted(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """The inverse of a pose, soonest of one that is given to a function."""
+    inverse = isinstance(here.node, ast.Call) and called(here.node) == "inv"
+    if scope.has_numpy and not inverse:
+        linear = ast.Attribute(ast.Name("np", ast.Load()), "linalg", ast.Load())
+        call = ast.Call(ast.Attribute(linear, "inv", ast.Load()), [here.node], [])
+        given = isinstance(here.parent, ast.Call)
+        yield here.instead(call, "inverse", _INVERTED + _GIVEN * (not given))
+
+
 def _matrices(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     node = here.node
     transposed = isinstance(node, ast.Attribute) and node.attr == "T"
@@ -329,6 +344,8 @@ def _matrices(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         whole = isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub)
         cost = 1.04 + _GIVEN * (given or whole) + _TYPED * _is_typed(node)
         yield here.instead(ast.Attribute(node, "T", ast.Load()), "transposed", cost)
+    if shape == _POSE and not isinstance(here.parent, ast.Subscript) and scope.is_pose(node):
+        yield from _inverted(here, scope)
     if isinstance(here.parent, ast.Subscript) and here.field == "value" and len(shape) > 2:
         return
     if isinstance(here.parent, ast.Return) and shape[0] == _TWIST and isinstance(node, ast.Name):

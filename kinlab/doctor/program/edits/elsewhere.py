@@ -10,7 +10,9 @@ import ast
 import re
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
+from itertools import product
 from types import FunctionType
 from typing import Any
 
@@ -27,9 +29,9 @@ from kinlab.doctor.program.places import (
     paired,
     with_other,
 )
-from kinlab.doctor.program.trial import Trial
+from kinlab.doctor.program.trial import FailedError, Trial
 
-_VECTOR, _ROTATION = (3,), (3, 3)
+_VECTOR, _ROTATION, _POSE = (3,), (3, 3), (4, 4)
 _THIRD, _LAST = 2, 3
 """Columns of a pose: the axis, the point."""
 _MATRIX, _TWO = 2, 2
@@ -148,7 +150,7 @@ class Elsewhere:
                 yield here.instead(new, _kind(node, new), _ACROSS)
         if shape is None or isinstance(node, ast.Constant | ast.List | ast.Tuple):
             return
-        if self._roles and shape in (_VECTOR, _ROTATION):
+        if self._roles and shape in (_VECTOR, _ROTATION, _POSE):
             yield from self._by_own_functions(here, scope, shape)
         named = isinstance(node, ast.Name) and isinstance(here.parent, ast.Assign)
         given = isinstance(here.parent, ast.Call) and called(here.parent) in scope.functions
@@ -178,15 +180,15 @@ class Elsewhere:
         """What the program's own functions of vectors and matrices make of an expression."""
         node = here.node
         own = self._roles.get(called(node), "") if isinstance(node, ast.Call) else ""
-        if own == "transposed":
-            yield here.instead(node.args[0], "transposed", 1.02)
+        if own in ("transposed", "inverse"):
+            yield here.instead(node.args[0], own, 1.02)
         elif own in ("turned", "times"):
             yield here.instead(node.args[1], "extra factor", 1.08)
         for name, role in self._roles.items():
             function = ast.Name(name, ast.Load())
-            if shape == _ROTATION:
-                if role == "transposed" and own != role:
-                    yield here.instead(ast.Call(function, [node], []), "transposed", 1.04)
+            if shape in (_ROTATION, _POSE):
+                if role == ("transposed" if shape == _ROTATION else "inverse") and own != role:
+                    yield here.instead(ast.Call(function, [node], []), role, 1.04)
                 continue
             if role == "turned":
                 for text, angle in scope.simple(()):
@@ -307,6 +309,26 @@ def _roles(trial: Trial, observed: Observed) -> dict[str, str]:
                 values = [one.values[0] for one in seen if one is not None and one.values]
                 role = _role(*values) if 1 < len(values) == len(seen) else ""
                 found |= {called(call): role} if role else {}
+    return found | _inverses(trial, observed)
+
+
+def _inverses(trial: Trial, observed: Observed) -> dict[str, str]:
+    """Functions that nothing asks any more, and that invert a pose."""
+    asked = {called(x) for tree in trial.trees for x in nodes(tree) if isinstance(x, ast.Call)}
+    idle = [
+        (k, part.name)
+        for k, part in enumerate(trial.program.parts)
+        if k and part.owner is None and not part.sets and part.name not in asked
+        if len(part.tree.args.args) == 1
+    ]
+    seen = (observed.of(x) for tree in trial.trees for x in nodes(tree)) if idle else ()
+    poses = (one.values[0] for one in seen if one is not None and one.shape == _POSE and one.values)
+    some = [one for one in poses if not np.allclose(one @ one, np.eye(4))][:1]
+    found: dict[str, str] = {}
+    for pose, (k, name) in product(some, idle):
+        with suppress(FailedError, TypeError, ValueError):
+            answer: Array = np.asarray(trial.part(k, [pose.copy()], {}), dtype=np.float64)
+            found |= {name: "inverse"} if _role(pose, answer) == "inverse" else {}
     return found
 
 
@@ -319,6 +341,9 @@ def _role(*values: Array) -> str:
     if shapes == [_ROTATION] and answer.shape == _ROTATION:
         plain = np.allclose(given[0], given[0].T)
         return "transposed" if np.allclose(answer, given[0].T) and not plain else ""
+    if shapes == [_POSE] and answer.shape == _POSE:
+        plain = np.allclose(answer, given[0])
+        return "inverse" if np.allclose(answer @ given[0], np.eye(4)) and not plain else ""
     if shapes == [_VECTOR, _VECTOR] and answer.shape == _VECTOR:
         if np.allclose(answer, given[0] + given[1]) and given[0].any() and given[1].any():
             return "sum"

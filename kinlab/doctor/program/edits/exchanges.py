@@ -103,7 +103,8 @@ def of_statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
                 row = bool(shapes[text]) and isinstance(node, ast.Name)
                 if other != text and (alike or row) and other not in uses:
                     new = Renamed({text: node}).of(value)
-                    yield here.within(here.node, "value", new, "name", 1.14 if alike else _OF_ROWS)
+                    kind = "transposed" if other == f"{text}.T" else "name"
+                    yield here.within(here.node, "value", new, kind, 1.14 if alike else _OF_ROWS)
     for text in names if isinstance(value, ast.Tuple | ast.List) and len(value.elts) == 2 else ():
         turned = [_with_the_other_sign(one, text) for one in value.elts] if not shapes[text] else []
         elts = [one for one in turned if one is not None]
@@ -353,7 +354,9 @@ class Renamed(ast.NodeTransformer):
         if other is not None:
             return copied(other)
         self.generic_visit(node)
-        return node
+        below = node.value if isinstance(node, ast.Attribute) and node.attr == "T" else None
+        twice = isinstance(below, ast.Attribute) and below.attr == "T"
+        return below.value if twice else node  # type: ignore[union-attr]  # R of R.T.T
 
     visit_Attribute = visit_Subscript = _piece
 

@@ -131,6 +131,8 @@ def _is_something(matrix: Array) -> bool:
 def of_origins(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """The way to a link's frame in that frame's axes: ``[a, d*sa, d*ca]`` for ``[a, 0, d]``.
 
+    Or ``[a*c, a*s, d]`` for it, in those of the frame before.
+
     Args:
         here: what is written as a row.
         scope: the sines and cosines that may be the twist's.
@@ -145,6 +147,9 @@ def of_origins(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
             aside = chains.opposite(up) if sign else up
             new = [across, ast.BinOp(aside, ast.Mult(), sine), ast.BinOp(up, ast.Mult(), cosine)]
             yield here.within(here.node, "elts", new, "axes", cost)
+        if isinstance(row[1], ast.Constant):
+            new = [ast.BinOp(across, ast.Mult(), x) for x in (cosine, sine)]
+            yield here.within(here.node, "elts", [*new, up], "axes", _TURNED_BACK)
 
 
 def _along_and_up(row: Sequence[ast.expr]) -> tuple[ast.expr, ast.expr] | None:

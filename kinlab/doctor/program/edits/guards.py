@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from kinlab.doctor.bytecode.syntax import called, names, nodes
 from kinlab.doctor.program.edits.scope.part import Scope
-from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import Here, ProgramEdit, is_nothing
 
 _GUARDED = 1.08
@@ -50,6 +50,8 @@ def of_guards(
         tests: what numbers are chosen by.
     """
     node, shape = here.node, observed.shape(here.node)
+    if isinstance(node, ast.Name) and shape is not None and node.id not in scope.unused:
+        yield from _of_the_other_case(here, scope, tests, shape)
     if shape == _VECTOR and isinstance(here.parent, ast.Assign) and here.field == "value":
         yield from _of_columns(here, scope, tests)
     op = getattr(here.parent, "op", None)
@@ -70,6 +72,17 @@ def of_guards(
             for first, last in ((nothing, node), (node, nothing)):
                 chosen = ast.Call(where, [mask, first, last], [])
                 yield here.instead(chosen, "condition", _GUARDED)
+
+
+def _of_the_other_case(
+    here: Here, scope: Scope, tests: dict[str, ast.expr], shape: Shape
+) -> Iterator[ProgramEdit]:
+    """What is set and used nowhere, for one case: ``turning if kind == "R" else sliding``."""
+    idle = sorted(one for one in scope.unused if scope.shapes.get(one) == shape)
+    for test in _tests_here(scope, tests) if idle else ():
+        for other in (ast.Name(one, ast.Load()) for one in idle):
+            for both in ((here.node, other), (other, here.node)):
+                yield here.instead(ast.IfExp(test, *both), "condition", _GUARDED)
 
 
 def _tests_here(scope: Scope, tests: dict[str, ast.expr]) -> list[ast.expr]:

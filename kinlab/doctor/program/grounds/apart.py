@@ -107,7 +107,7 @@ def arm_apart(
     if table is None:
         return None
     found = [*numbers_of(trial, observed)]
-    turned = twisted_by(table, found)
+    turned = twisted_by(table, found, trial)
     cells = _cells(table, float(np.linalg.norm(robot.model.gravity.linear)))
     far = _far_at_home(table, cells)
     cells += [_at_home(x, k) for k, x in far.items()]

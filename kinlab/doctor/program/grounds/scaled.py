@@ -11,6 +11,7 @@ import math
 import operator
 import sys
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -155,7 +156,7 @@ def other_arm(
     if table is None:
         return None
     found = [*numbers_of(trial, observed)]
-    twisted = twisted_by(table, found) if twist else 1.0
+    twisted = twisted_by(table, found, trial) if twist else 1.0
     kinds = _kinds(robot, table, twisted)
     may = [_meant(kinds, one.value) for one in found]
     if not masses:
@@ -287,12 +288,36 @@ def holds_an_arm(trial: Trial) -> bool:
     return any(home(x) in ("kinlab", "pinocchio") for x in held) or holds_more(trial)
 
 
-def twisted_by(table: DHTable, found: Sequence[ProgramNumber]) -> float:
-    """How many times as large twists are, where the program's numbers hold them."""
+def twisted_by(table: DHTable, found: Sequence[ProgramNumber], trial: Trial) -> float:
+    """How many times as large twists are, where the program's numbers hold them.
+
+    Where these hold an offset as it is turned, ``[a, d*sin(alpha), d*cos(alpha)]``, they stay.
+    """
+    if _offsets_turned(table, trial):
+        return 1.0
     twists = [link.alpha for link in table.links if link.alpha]
     held = np.array([one.value for one in found if one.alone and one.used])
     turned = bool(twists) and all(_among(x, held) for x in twists) and not _shared(table, held)
     return _TWISTED if turned else 1.0
+
+
+def _offsets_turned(table: DHTable, trial: Trial) -> bool:
+    """Whether a row of a program is the way from a frame to the next, with its twist in it."""
+    turned = [
+        np.abs([link.a, link.d * math.sin(link.alpha), link.d * math.cos(link.alpha)])
+        for link in table.links
+    ]
+    turned = [row for row in turned if row[1] > TOLERANCES.same_number]
+    held = [trial.space.get(name) for name in trial.program.data] if turned else []
+    rows = [row for one in held if isinstance(one, list | tuple | np.ndarray) for row in one]
+    for row in rows:
+        if np.shape(row) == turned[0].shape:
+            with suppress(TypeError, ValueError):
+                typed = np.abs(np.asarray(row, dtype=float))
+                near = TOLERANCES.same_number
+                if any(np.allclose(typed, own, rtol=near, atol=near) for own in turned):
+                    return True
+    return False
 
 
 def named_at_will(value: float) -> bool:

@@ -24,6 +24,8 @@ from kinlab.tolerances import TOLERANCES
 _FITTING, _MOVING, _BESIDE = 1.02, 1.05, 0.03
 """Cost of a term of the sum's dimension; of one with an acceleration, of which none is known; what
 a further factor adds."""
+_VECTOR, _ORIGIN = (3,), 3
+"""Shape of a point; the column of a frame's transform in which it stands."""
 _AT_HAND, _MOST = 24, 40
 """Numbers, or vectors, by which it may be multiplied; terms of one place."""
 _ACCELERATIONS = re.compile(
@@ -52,15 +54,18 @@ def unread_terms(
         if shape is None or len(shape) > 1 or not idle or not (size or _is_summed(here, own)):
             continue
         found: list[tuple[float, ast.expr]] = []
-        for term, factors in _products(scope, [*_each(scope, idle)], shape):
+        beside = [*_axes_beside(here.node, scope)] if shape == _VECTOR else []
+        for term, factors in _products(scope, [*_each(scope, idle)], shape, beside):
             made = known.of_made(term)
             gap = None if size is None or made is None else abs(made - size)
             if text_of(term) in own or (gap is not None and gap > TOLERANCES.tried_further):
                 continue
             moving = any(map(_is_acceleration, factors))
-            if gap is not None or moving:
+            axis = any(one is other for one in factors for other in beside)
+            if gap is not None or moving or axis:
                 more = _BESIDE * (len(factors) - 1)
-                found.append(((_MOVING if gap is None or not moving else _FITTING) + more, term))
+                sure = axis or (gap is not None and moving)
+                found.append(((_FITTING if sure else _MOVING) + more, term))
         found.sort(key=lambda one: one[0])
         for cost, term in found[:_MOST]:
             yield here.instead(ast.BinOp(here.node, ast.Add(), term), "missing term", cost)
@@ -163,10 +168,14 @@ def _with_key(node: ast.Subscript, key: Any) -> ast.Subscript:
 
 
 def _products(
-    scope: Scope, idle: Sequence[tuple[ast.expr, Shape]], shape: Shape
+    scope: Scope,
+    idle: Sequence[tuple[ast.expr, Shape]],
+    shape: Shape,
+    beside: Sequence[ast.expr],
 ) -> Iterator[tuple[ast.expr, list[ast.expr]]]:
     """What is unread times a number, or a row; of a number also times both, each with these."""
     numbers, rows = ([*_worked_out(scope, size)][:_AT_HAND] for size in ((), shape))
+    rows = [*beside, *rows]
     lists = [(x, size) for size in scope.pieces if len(size) == 1 for x in _worked_out(scope, size)]
     entries = _each(scope, [x for x in lists if _is_acceleration(x[0])])
     told = {*map(text_of, numbers)}
@@ -179,6 +188,23 @@ def _products(
         elif size == ():
             yield from ((_times(entry, row), [row]) for row in rows)
             yield from ((_times(_times(entry, x), row), [x, row]) for x in moving for row in rows)
+
+
+def _axes_beside(node: ast.expr, scope: Scope) -> Iterator[ast.expr]:
+    """Axes of the frame of an origin: ``z[6]`` of ``p[6]``, ``T[:3, 2]`` of ``T[:3, 3]``."""
+    key = node.slice if isinstance(node, ast.Subscript) else None
+    if not isinstance(node, ast.Subscript) or key is None:
+        return
+    if isinstance(key, ast.Tuple):
+        if getattr(key.elts[-1], "value", None) == _ORIGIN:
+            for k in reversed(range(_ORIGIN)):
+                column = ast.Tuple([*key.elts[:-1], ast.Constant(k)], ast.Load())
+                yield ast.Subscript(node.value, column, ast.Load())
+        return
+    own, of = text_of(node.value), scope.observed.shape(node.value)
+    for name, shape in scope.shapes.items():
+        if name != own and (shape == of or (of is None and name in scope.lists)):
+            yield ast.Subscript(ast.Name(name, ast.Load()), key, ast.Load())
 
 
 def _worked_out(scope: Scope, shape: Shape) -> Iterator[ast.expr]:

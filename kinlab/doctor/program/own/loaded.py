@@ -185,7 +185,7 @@ def _small(value: Any) -> bool:
     return not isinstance(value, list | tuple | dict | set) or len(value) <= _SMALL
 
 
-_SMALL = 1000
+_SMALL = 2000
 """Entries of a list or an array that lines make."""
 
 

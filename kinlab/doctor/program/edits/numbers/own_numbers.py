@@ -37,6 +37,8 @@ _OTHER_END = 1.06
 _HALVES = 2
 _AT_CENTRE = 1.08
 """Cost of where a link's centre is for its length."""
+_COPIED = 0.01
+"""What it costs more where a name is used that is another's copy."""
 _OF_POINTS = 1.14
 """Cost of a point's coordinate for a number."""
 _CONSTANT = 1.06
@@ -107,14 +109,24 @@ def of_own_numbers(
                 yield from _with_another(here, kinds)
                 yield from _instead_of_zero(here, trial, left_out)
     to_centres = _to_centres(table, given)
+    copies = {one for tree in trial.trees for one in _copies(tree)}
     for part, tree in enumerate(trial.trees) if to_centres else ():
         for here in places(part, tree):
-            yield from _at_the_centre(here, observed, to_centres)
+            dear = isinstance(here.node, ast.Name) and here.node.id in copies
+            for edit in _at_the_centre(here, observed, to_centres):
+                yield replace(edit, cost=edit.cost + _COPIED) if dear else edit
     ends = (np.ravel(np.asarray(end)[:3, 3]) for end in (table.tool, table.base))
     arm = {abs(float(x)) for x in (*(x for k in table.links for x in (k.a, k.d)), *chain(*ends))}
     unnamed = [x for x in sorted(arm) if x and not among(x, given)]
     yield from _moves_left_out(trial, observed, table, unnamed)
     yield from _begun_at_the_base(trial, observed, table)
+
+
+def _copies(tree: ast.AST) -> Iterator[str]:
+    """The names that are set to what another one is: ``R1 = A1``, where it is rather wrong."""
+    for line in nodes(tree):
+        if isinstance(line, ast.Assign) and isinstance(line.value, ast.Name):
+            yield from (one.id for one in line.targets if isinstance(one, ast.Name))
 
 
 def _are(both: tuple[float, float], pair: tuple[float, float]) -> bool:

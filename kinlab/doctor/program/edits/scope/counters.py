@@ -77,9 +77,15 @@ def tests(tree: ast.AST, trial: Trial, counters: Sequence[str]) -> dict[str, ast
     here = {*names(tree), *counters}
     found = [one for one in asked if not {*counters}.isdisjoint(names(one))]
     found = [one for one in found if here.union(trial.space) >= {*names(one)}]
-    found = [one for one in found if not {*names(one)} <= {*counters}]  # no first or last joint
+    # no first or last joint, but the joint's kind: kind == "R"
+    found = [one for one in found if not {*names(one)} <= {*counters} or _is_of_letters(one)]
     found += _of_kinds(trial, counters)
     return {ast.unparse(one): copied(one) for one in found}
+
+
+def _is_of_letters(test: ast.expr) -> bool:
+    """Whether a condition compares with a text."""
+    return any(isinstance(getattr(one, "value", None), str) for one in nodes(test))
 
 
 def _of_kinds(trial: Trial, counters: Sequence[str]) -> Iterator[ast.expr]:

@@ -90,7 +90,9 @@ def _named(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit
     Soonest what the statement sets, which is then set anew from what it was.
     """
     shape = observed.shape(here.node)
-    if not shape or isinstance(here.parent, ast.Subscript | ast.Attribute):
+    parent = here.parent
+    of_another = isinstance(parent, ast.Attribute) and parent.attr not in ("T", "dot")
+    if not shape or of_another or isinstance(parent, ast.Subscript):
         return
     line = statement_of(here.above)
     targets = line.targets if isinstance(line, ast.Assign) else []

@@ -8,6 +8,7 @@ from itertools import combinations
 from typing import Any
 
 from kinlab.doctor.bytecode.syntax import called, copied, shallow
+from kinlab.doctor.program.edits.chains import SUMS
 from kinlab.doctor.program.edits.numbers.data import moved_on, other_words
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import Here, ProgramEdit, follow, number
@@ -98,8 +99,18 @@ def _neighbours(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
 
 
 def _like_another(here: Here, rows: Sequence[ast.expr]) -> Iterator[ProgramEdit]:
-    """An entry as another one is, with its own index: ``[F[0], f[1] + F[1]]``."""
+    """An entry, or its last term, as another one is, with its own index: ``f[1] + F[1]``."""
     for k, own in enumerate(rows):
+        added = set[str]()
+        for j, other in enumerate(rows):
+            if j == k or not isinstance(other, ast.BinOp) or not isinstance(other.op, SUMS):
+                continue
+            term = _Counted(j, k).visit(copied(other.right))
+            text = ast.dump(term)
+            if text != ast.dump(other.right) and text not in added | {ast.dump(own)}:
+                added.add(text)
+                more = ast.BinOp(own, other.op, term)
+                yield here.within(here.node.elts, k, more, "missing term", _LIKE_ANOTHER)
         for j, other in enumerate(rows):
             new = _Counted(j, k).visit(copied(other)) if j != k else own
             if ast.dump(new) != ast.dump(own) and ast.dump(new) != ast.dump(other):
