@@ -120,13 +120,13 @@ def examine_formulas(
 
     Raises:
         ExpressionError: a name that means nothing, or a part of a chain of equalities that is none
-            where the last one is not right.
+            where the last one is wrong, and nobody knows why.
     """
     file = as_judged(file, robot)
     parts = [_examined(file, robot, samples, seed)]
     unknown = file.broken.removeprefix(f"{file.path}: ")
     right = all(one.agrees for one in parts[0])
-    if unknown and not right:
+    if unknown and not all(one.agrees or one.causes for one in parts[0]):
         raise ExpressionError(file.broken)
     for other in file.others:
         try:

@@ -453,7 +453,12 @@ def rates_of_joints(text: str, place: str, known: Iterable[str]) -> dict[str, st
 _ENTRY = re.compile(r"([A-Za-z]+)_?((?:\d_?\d?_?\d?)?)", re.ASCII)
 _PRINTED = {"fk": "T", "L": "lagrangian"}
 """What ``kinlab derive`` calls a quantity whose name elsewhere is another."""
-_OF_STATE = re.compile(r"\s*(?:\\left)?\s?\(([^()]*[A-Za-zθ][^()]*)\)$")
+_OF_STATE = re.compile(
+    r"\s*(?:\\left)?\s?\((?=[^()]*[A-Za-zθ])(?:[\s,;{}_·'~\d₀-₉]|\\[,;:! ]|\\right(?![A-Za-z])"
+    r"|\\?(?:d{0,3}dot|boldsymbol|mathbf|mathrm|vec|bm|var|theta|Theta|phi|psi|xi|tau|omega|alpha|th|qd{0,2}|d{0,2}q"
+    r"|[qQtxXvaT]|[θΘϑφτω]|q̇|q̈|θ̇|θ̈|[\u0300-\u036f])(?![A-Za-z])|\\var(?=theta|phi)){1,60}\)$"
+)
+"""The state behind a name, ``C(\\theta, \\dot\\theta)``, and no factor: ``m_3(l_3 + ...)``."""
 _TIMES_RATES = re.compile(r"(?<=\))\s*(?:\\cdot\s*)?\\dot\s*(?:\{\s*)?\\?[A-Za-z]+\s*\}?$")
 """The rates that a matrix is multiplied by, behind its name: C(q, \\dot q) \\dot q."""
 _IN_BASE = re.compile(r"^(?:\{\s*\})?\^(?:0|\{\s*0\s*\})(?:_(?:\w|\{\s*\w\s*\}))?")
@@ -820,7 +825,8 @@ def readings(text: str, entry: str) -> list[str]:
         return [f"{dollars}{part}{dollars}" for part in reversed(parts)]
     if not 2 <= len(parts) <= _LONGEST_CHAIN or any(part[-1:] in ("", *"<>!") for part in parts):
         return [text]
-    names = [part for part in parts if is_name(part)]
+    named = [is_name(part) and not (k and _is_times(part, entry)) for k, part in enumerate(parts)]
+    names = [part for part, is_one in zip(parts, named, strict=True) if is_one]
     formulas = [part for part in parts if part not in names] or parts[-1:]
     left = next((name for name in names if begins_with(f"{name} =", entry)), "")
     strange = any(name != left and not _also(name, entry) for name in names)
@@ -844,6 +850,15 @@ def is_name(text: str) -> bool:
     with suppress(ExpressionError):
         return "∂" not in text and bool(_NAME.fullmatch(entry_name(text.strip("& "))))
     return False
+
+
+def _is_times(text: str, entry: str) -> bool:
+    r"""Whether a name with rates in parentheses is their product: ``h(\dot q_1 \dot q_2)``."""
+    if "(" not in text:
+        return False
+    (head, places), (mine, asked) = map(_head_and_places, map(entry_name, (text, entry)))
+    alike = bool(places) == bool(asked) and any({head, mine} <= group for group in _MEANT)
+    return head != mine and not alike
 
 
 def is_name_of(name: str, entry: str) -> bool:

@@ -16,7 +16,7 @@ from kinlab.formulas.handed.vocabulary import BEHIND, CHINESE, LATIN, chinese_le
 _FONT = re.compile(r"\\(?:text|textrm|textit|textbf|mbox|textnormal|mathrm|rm|hbox)\s*\{([^{}]*)\}")
 _BELOW = re.compile(rf"_\s*(?:\{{[^{{}}]*(?:\{{[^{{}}]*\}})?[^{{}}]*\}}|[{LATIN}]+|\w)")
 _NAMES_BELOW = re.compile(
-    r"(?<![A-Za-z])(?:[vw][xyz]|com|cog|cm|cg|tcp|ee|lin|rot|ang|pos)(?![a-z])"
+    r"(?<![A-Za-z])(?:[vw][xyz]|com|cog|cm|cg|tcp|ee|lin|rot|ang|pos|vec|mat|sym)(?![a-z])"
 )
 """What stands below a name and says of what it is, as its places do."""
 _AROUND = re.compile(r"\\(?:begin|end|label|tag|ref|color|textcolor|operatorname)\*?\s*\{[^{}]*\}")
@@ -45,17 +45,26 @@ _ENDING = re.compile(rf"^(?:\d+[.,]\d+|[{LATIN}]*\d\w*|\w)[ ,.;:-]+(?=\S)")
 _FRAME = re.compile(
     r"\bpart \(?[a-h1-9]\b"
     r"|\b(?:base|world|inertial|fixed|reference)[ -](?:frame|system|coordinates?)\b"
-    r"|\bsi\s+(?:ha|ottiene|trova|ricava)\b"
+    r"|\bsi\s+(?:ha|ottiene|trova|ricava)\b|\b(?:since|because|as)\s+only\b|\b(?:da|weil)\s+nur\b"
     r"|\b(?:basis|welt|inertial)(?:koordinaten)?system\b|基坐标系|世界坐标系|固定坐标系",
     re.IGNORECASE,
 )
 _ORDER = {"first": 1, "second": 2, "third": 3, "fourth": 4}
 _ORDER |= {"erste": 1, "zweite": 2, "dritte": 3, "vierte": 4}
 _ORDER |= {"ersten": 1, "zweiten": 2, "dritten": 3, "vierten": 4}
+_ROMANCE = (
+    ("primer primera primero premier première primo prima", 1),
+    ("segundo segunda deuxième seconde secondo seconda", 2),
+    ("tercer tercera tercero troisième terzo terza", 3),
+    ("cuarto cuarta quatrième quarto quarta", 4),
+)
+_ORDER |= {word: k for words, k in _ROMANCE for word in words.split()}
 _ORDER |= {"一": 1, "二": 2, "三": 3, "四": 4}
 _PART = re.compile(
-    r"(?:\b(?P<order>first|second|third|fourth|ersten?|zweiten?|dritten?|vierten?)\s+)?"
-    r"\b(?:joints?|links?|axis|axes|motors?|actuators?|bod(?:y|ies)|gelenks?|achsen?|glied(?:e?s)?|legs?|arms?|rods?)\b"
+    r"(?:\b(?P<order>first|second|third|fourth|ersten?|zweiten?|dritten?|vierten?"
+    rf"|{'|'.join(words.replace(' ', '|') for words, _k in _ROMANCE)})\s+)?"
+    r"\b(?:joints?|links?|axis|axes|motors?|actuators?|bod(?:y|ies)|gelenks?|achsen?|glied(?:e?s)?|legs?|arms?|rods?"
+    r"|articulaci[oó]n(?:es)?|articulations?|eslab[oó]n(?:es)?|giunt[oi]|liaisons?|segments?)\b"
     r"(?:\s*(?:no\.?|nr\.?|number|#)?\s*(?P<number>[1-9]))?"
     r"|(?:第(?P<chinese>[一二三四1-9])个?)?(?:关节|连杆|杆|支链|杆件|轴)(?P<behind>[1-9])?",
     re.IGNORECASE,

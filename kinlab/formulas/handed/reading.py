@@ -187,7 +187,7 @@ def as_formula(
     text = _AND_SO_ON.sub("", as_typed(text))
     unjudged = _("the step {words!r} was not judged")
     steps = [unjudged.format(words=one[0].strip("=& ")) for one in STEP.finditer(text)]
-    text, label = _without_label(of_packages(text))
+    text, label = _without_label(_MIRRORED.sub("", _as_asked(of_packages(text), entry)))
     text = _HENCE.sub("\n", without_prompts(without_gaps(text)))
     text = _BOLD_SIDES.sub(lambda found: found[1] or f" {found[2]}", text)
     text = _BULLET.sub("", text)
@@ -236,11 +236,27 @@ def as_formula(
     )
 
 
+_MIRRORED = re.compile(
+    r"\s{0,9}\((?:[^()=\n]{0,40}[\s,:])?[A-Za-z]_?\{?([1-9])([1-9])\}?\s{0,9}=\s{0,9}[A-Za-z]_?\{?\2\1\}?\s{0,9}\)"
+)
+"""What a symmetric matrix has on its other side, too: ``(symmetric, so M21 = M12)``."""
+_ASKED = re.compile(r"^(\s*)([A-Za-z]\w{0,20})\[(\d)\](?=\s*=(?!=))")
+_INDEX = re.compile(r"\w+\[(\d)\]")
+
+
+def _as_asked(text: str, entry: str) -> str:
+    """``tau3 =`` of ``tau[2] =`` where ``statics[2]`` is asked for, and no other index stands."""
+    found, asked = _ASKED.match(text), _INDEX.fullmatch(entry)
+    if found is None or asked is None or asked[1] != found[3] or text.count("[") > 1:
+        return text
+    return f"{found[1]}{found[2]}{int(found[3]) + 1}{text[found.end() :]}"
+
+
 _BELOW = r"(?:\w|\{[^={}]{0,20}(?:\{[^={}]{0,9}\}[^={}]{0,9}){0,2}\})"
 _LABEL = re.compile(
     r"^(?P<begin>\s*\$*\s*)(?P<label>"
-    rf"(?:\{{\s*\}}\s*\^\s*{_BELOW}\s*)(?:_\s*{_BELOW}\s*)?[vawVpr](?![A-Za-z])(?:_\s*{_BELOW})?"
-    rf"|[vawpr]\s*_\s*\{{\s*\w{{1,2}}\s*,\s*[xyz]\s*\}}"
+    rf"(?:\{{\s*\}}\s*\^\s*{_BELOW}\s*)(?:_\s*{_BELOW}\s*)?[vawV](?![A-Za-z])(?:_\s*{_BELOW})?"
+    rf"|[vaw]\s*_\s*\{{\s*\w{{1,2}}\s*,\s*[xyz]\s*\}}"
     rf"|[\[(]\s*\\?[A-Za-z]{{1,6}}(?:\s*[_^]\s*{_BELOW}){{1,3}}\s*[\])]\s*_\s*{_BELOW}"
     r")(?P<equals>\s*&?\s*=(?!=))(?=[^=]*$)"
 )

@@ -20,6 +20,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import called, copied, names, nodes, targets_of, text_of
+from kinlab.doctor.program.edits.scope.forms import statement_of
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import (
@@ -31,6 +32,8 @@ from kinlab.doctor.program.places import (
 )
 from kinlab.doctor.program.trial import FailedError, Trial
 
+_GIVEN, _ASKED = 1.06, 1.13
+"""Cost of what a function makes of a vector, where its line asks it, and where it does not."""
 _VECTOR, _ROTATION, _POSE = (3,), (3, 3), (4, 4)
 _THIRD, _LAST = 2, 3
 """Columns of a pose: the axis, the point."""
@@ -116,6 +119,7 @@ class Elsewhere:
         self._carried = {x: y for tree in trial.trees for x, y in _carried_on(tree)}
         self._products = _products(trial, observed)
         self._roles = _roles(trial, observed)
+        self._within = _within(trial, observed)
 
     def edits(self, here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
         """What an expression should be as it is elsewhere."""
@@ -150,6 +154,8 @@ class Elsewhere:
                 yield here.instead(new, _kind(node, new), _ACROSS)
         if shape is None or isinstance(node, ast.Constant | ast.List | ast.Tuple):
             return
+        if shape and self._within and isinstance(node, ast.Name | ast.Subscript | ast.Call):
+            yield from self._given_to_own(here, shape)
         if self._roles and shape in (_VECTOR, _ROTATION, _POSE):
             yield from self._by_own_functions(here, scope, shape)
         named = isinstance(node, ast.Name) and isinstance(here.parent, ast.Assign)
@@ -175,6 +181,17 @@ class Elsewhere:
             if observed.shape(of.whole) == shape or isinstance(here.parent, ast.Assign):
                 cost = 1.1 if isinstance(node, ast.Name) else 1.06
                 yield here.instead(larger, _kind(node, larger), cost)
+
+    def _given_to_own(self, here: Here, shape: Shape) -> Iterator[ProgramEdit]:
+        """What a function of the program's makes of a vector: ``perp(w)`` for ``w``."""
+        line = statement_of(here.above)
+        beside = {called(x) for x in nodes(line) if isinstance(x, ast.Call)}
+        outer = called(here.parent) if isinstance(here.parent, ast.Call) else ""
+        own = called(here.node) if isinstance(here.node, ast.Call) else ""
+        for name, asked in self._within.items():
+            if asked == shape and name not in (own, outer):
+                call = ast.Call(ast.Name(name, ast.Load()), [here.node], [])
+                yield here.instead(call, "function", _GIVEN if name in beside else _ASKED)
 
     def _by_own_functions(self, here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         """What the program's own functions of vectors and matrices make of an expression."""
@@ -329,6 +346,18 @@ def _inverses(trial: Trial, observed: Observed) -> dict[str, str]:
         with suppress(FailedError, TypeError, ValueError):
             answer: Array = np.asarray(trial.part(k, [pose.copy()], {}), dtype=np.float64)
             found |= {name: "inverse"} if _role(pose, answer) == "inverse" else {}
+    return found
+
+
+def _within(trial: Trial, observed: Observed) -> dict[str, Shape]:
+    """The functions of the program's that make a vector of a vector of as many numbers."""
+    own = {part.name for part in trial.program.parts[1:] if part.owner is None and not part.sets}
+    found: dict[str, Shape] = {}
+    for call in (x for tree in trial.trees for x in nodes(tree) if isinstance(x, ast.Call)):
+        if called(call) in own and isinstance(call.func, ast.Name) and len(call.args) == 1:
+            shape = observed.shape(call)
+            if shape and len(shape) == 1 and observed.shape(call.args[0]) == shape:
+                found[called(call)] = shape
     return found
 
 

@@ -12,6 +12,8 @@ from kinlab.doctor.program.places import Here, ProgramEdit, is_nothing
 
 _GUARDED = 1.08
 """What it costs that a term counts for some joints only."""
+_PART = 0.18
+"""What it costs more of a part of an expression."""
 _CHOSEN = 1.1
 """The same of a force or a moment, as the joint moves."""
 _CHOICE = 3
@@ -79,10 +81,12 @@ def _of_the_other_case(
 ) -> Iterator[ProgramEdit]:
     """What is set and used nowhere, for one case: ``turning if kind == "R" else sliding``."""
     idle = sorted(one for one in scope.unused if scope.shapes.get(one) == shape)
+    inside = isinstance(here.parent, ast.BinOp | ast.UnaryOp | ast.IfExp)
+    cost = _GUARDED + _PART * inside
     for test in _tests_here(scope, tests) if idle else ():
         for other in (ast.Name(one, ast.Load()) for one in idle):
             for both in ((here.node, other), (other, here.node)):
-                yield here.instead(ast.IfExp(test, *both), "condition", _GUARDED)
+                yield here.instead(ast.IfExp(test, *both), "condition", cost)
 
 
 def _tests_here(scope: Scope, tests: dict[str, ast.expr]) -> list[ast.expr]:

@@ -310,13 +310,13 @@ def _offsets_turned(table: DHTable, trial: Trial) -> bool:
     turned = [row for row in turned if row[1] > TOLERANCES.same_number]
     held = [trial.space.get(name) for name in trial.program.data] if turned else []
     rows = [row for one in held if isinstance(one, list | tuple | np.ndarray) for row in one]
+    near = TOLERANCES.same_number
     for row in rows:
-        if np.shape(row) == turned[0].shape:
-            with suppress(TypeError, ValueError):
-                typed = np.abs(np.asarray(row, dtype=float))
-                near = TOLERANCES.same_number
-                if any(np.allclose(typed, own, rtol=near, atol=near) for own in turned):
-                    return True
+        with suppress(TypeError, ValueError):  # what is no row of numbers
+            typed = np.abs(np.asarray(row, dtype=float))
+            same = turned if typed.shape == turned[0].shape else []
+            if any(np.allclose(typed, own, rtol=near, atol=near) for own in same):
+                return True
     return False
 
 

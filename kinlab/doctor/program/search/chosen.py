@@ -15,7 +15,7 @@ from kinlab.doctor.changes import table_of
 from kinlab.doctor.glossary.textbook import Glossary
 from kinlab.doctor.program.edits.every import edits
 from kinlab.doctor.program.edits.numbers.as_the_arm import as_it_is, of_table
-from kinlab.doctor.program.edits.numbers.data import GRAVITY
+from kinlab.doctor.program.edits.numbers.data import is_gravity
 from kinlab.doctor.program.edits.numbers.own_numbers import of_own_numbers
 from kinlab.doctor.program.edits.scope.forms import summands
 from kinlab.doctor.program.edits.scope.part import Scope
@@ -241,7 +241,7 @@ def _of_sign(edit: ProgramEdit, observed: Observed, robot: Any) -> float:
     if edit.numbers is None:
         return cost
     old, new = edit.numbers
-    if edit.place and GRAVITY.match(str(edit.node)):
+    if edit.place and is_gravity(edit.node, edit.place):
         own = getattr(getattr(robot, "model", None), "gravity", None)
         down = () if own is None else own.linear[own.linear != 0.0]
         falls, will = (bool(np.isclose(down, x).any()) for x in (old, new))

@@ -235,7 +235,7 @@ class LineSearch:
             most = _WEIGHED if self.thorough or self.rows else _WEIGHED // 3
             every = chosen(self.asked, self.observed, self.known, self.dimensions, below, most)
             if self.rows:
-                every = [one for one in every if (one.part, row_of(one)) in self.rows]
+                every = [x for x in every if x.part != DATA and (x.part, row_of(x)) in self.rows]
             every = [edit for edit in every if not self.evidence.spoils_a_helper(edit)]
             more = self._waits()
             dear = {edit: self.likely(edit) + more[edit.part] for edit in every}

@@ -39,13 +39,19 @@ _NAMES = 12
 """Names of numbers of which any two may have been exchanged."""
 
 
+def is_gravity(node: Any, place: Sequence[Any]) -> bool:
+    """Whether a number of the data is gravity's, by its name or that of the row it is in."""
+    told = [one.removeprefix(".") for one in place if isinstance(one, str)]
+    return bool(GRAVITY.match((told or [str(node)])[-1]))
+
+
 def of_data(trial: Trial) -> Iterator[ProgramEdit]:
     """Every number of the data with another sign, doubled, halved, or taken for degrees."""
     for leaf in leaves(trial):
         if leaf.value:
             # a name for a negative number: lengths and masses are none
             negative = leaf.value < 0 and not leaf.place
-            down = leaf.place and GRAVITY.match(str(leaf.node))  # up or down
+            down = leaf.place and is_gravity(leaf.node, leaf.place)  # up or down
             yield leaf.edit(-leaf.value, "sign", 0.99 if negative or down else 1.05)
             yield leaf.edit(2 * leaf.value, "factor", 1.2)
             yield leaf.edit(leaf.value / 2, "factor", 1.2)

@@ -16,6 +16,7 @@ from kinlab.doctor.bytecode.syntax import called, nodes
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.numbers.as_the_arm import typed
 from kinlab.doctor.program.edits.numbers.data import NumberPlace, measured, numbers
+from kinlab.doctor.program.edits.numbers.left_out import at_the_tool, rotors_left_out
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import ANGLES, DATA, Here, ProgramEdit, number, places, root
 from kinlab.doctor.program.trial import Trial
@@ -118,6 +119,10 @@ def of_own_numbers(
     ends = (np.ravel(np.asarray(end)[:3, 3]) for end in (table.tool, table.base))
     arm = {abs(float(x)) for x in (*(x for k in table.links for x in (k.a, k.d)), *chain(*ends))}
     unnamed = [x for x in sorted(arm) if x and not among(x, given)]
+    for part, tree in enumerate(trial.trees):
+        for here in places(part, tree):
+            yield from at_the_tool(here, table, given)
+            yield from rotors_left_out(here, table)
     yield from _moves_left_out(trial, observed, table, unnamed)
     yield from _begun_at_the_base(trial, observed, table)
 

@@ -33,6 +33,7 @@ class Knowledge:
         called: the names of these, and of its methods.
         has_numpy: whether numpy is called ``np``.
         summed_from: the entries of which names are the sums: ``w = v[0] + v[1]``.
+        sums_with: the names that are sums with an entry, by its text.
         accumulating: what itertools' function of sums up to each is called.
         shapes: names of numbers, by their shapes.
         lists: names of lists, by the shapes of their entries.
@@ -114,7 +115,7 @@ class Knowledge:
         self.uncalled = [*idle.not_called(trial)]
         self._angular = {name for name in ANGLES if callable(space.get(name))}
         self.has_numpy = functions.has_numpy(space)
-        self.summed_from = pieces.summed_from(tree)
+        self.summed_from, self.sums_with = pieces.summed_from(tree), pieces.sums_with(tree)
         self.accumulating = functions.accumulating(space)
         self.pi = functions.pi_of(space)
         self.ranges = [copied(node) for node in calls if called(node) == "range"]

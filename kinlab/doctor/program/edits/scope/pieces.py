@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Mapping, Sequence
 
-from kinlab.doctor.bytecode.syntax import copied, nodes
+from kinlab.doctor.bytecode.syntax import copied, nodes, text_of
 from kinlab.doctor.program.edits.scope.forms import entry, named, summands
 from kinlab.doctor.program.observed import Observed, Shape
 
@@ -56,6 +56,19 @@ def summed_from(tree: ast.AST) -> dict[str, list[ast.expr]]:
         entries: list[ast.expr] = [one for one in terms if isinstance(one, ast.Subscript)]
         if isinstance(name, ast.Name) and len(entries) > 1:
             found[name.id] = entries
+    return found
+
+
+def sums_with(tree: ast.AST) -> dict[str, list[str]]:
+    """The names that are set to sums with an entry in them, by its text: ``px = r[0] - s*e``."""
+    found: dict[str, list[str]] = {}
+    for line in nodes(tree):
+        if isinstance(line, ast.Assign) and isinstance(line.value, ast.BinOp):
+            terms = [*summands(line.value)]
+            entries = [one for one in terms if isinstance(one, ast.Subscript)]
+            for one in entries if len(terms) > 1 else ():
+                own = [x.id for x in line.targets if isinstance(x, ast.Name)]
+                found.setdefault(text_of(one), []).extend(own)
     return found
 
 

@@ -32,6 +32,10 @@ _BESIDE = 1.06
 """Cost of an index that another row has in the same line."""
 
 
+_OF_THE_SUM = 1.06
+"""Cost of a row that is a sum, for the number in it."""
+
+
 def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
     node = here.node
     shape = observed.shape(node.value)
@@ -55,6 +59,9 @@ def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
     for name in sorted(scope.unused) if isinstance(node.ctx, ast.Load) else ():
         if scope.shapes.get(name) == observed.shape(node):
             yield here.instead(ast.Name(name, ast.Load()), "name", 1.05)
+    for name in scope.sums_with.get(text_of(node), ()):
+        if scope.shapes.get(name) not in (None, observed.shape(node)):  # one number for a row
+            yield here.instead(ast.Name(name, ast.Load()), "name", _OF_THE_SUM)
     beside = _keys_beside(here)
     for k, (holder, field, key) in enumerate(keys):
         size = shape[k] if shape is not None and k < len(shape) else 0

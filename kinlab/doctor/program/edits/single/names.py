@@ -24,8 +24,8 @@ _OF_ROD = 0.04
 """What that costs more in a rod's moment of inertia, whose number is as soon mistaken."""
 _OF_ANOTHER = 0.1
 """What the distance of a centre costs more that would carry the mass of another link alone."""
-_ENTRY = 1.16
-"""Cost of an entry of what stands in the same line, for a name."""
+_ENTRY, _ENTRY_NEAR = 1.16, 1.2
+"""Cost of an entry of what stands in the same line, or in one beside it, for a name."""
 _HALF = 1.03
 """Cost of a length for the distance of the centre, where that is half of it, or that for it."""
 _COUNTERS = 1.08
@@ -90,11 +90,25 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
 def _entries_beside(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """An entry of what stands in the same line, for a name: ``crank["c"][i]`` for l1."""
     read = scope.names_in(statement_of(here.above))
+    near = {name for line in _lines_beside(here) for name in scope.names_in(line)} - {*read}
     for _text, entry in scope.simple(()):
         if isinstance(entry, ast.Subscript) and root(entry) in read:
             yield here.instead(entry, "name", _ENTRY)
+        elif isinstance(getattr(entry, "slice", None), ast.Constant) and root(entry) in near:
+            yield here.instead(entry, "name", _ENTRY_NEAR)
     for entry in scope.summed_from.get(here.node.id, ()):
         yield here.instead(entry, "name", _ADDEND)
+
+
+def _lines_beside(here: Here) -> list[ast.stmt]:
+    """The statements before and behind the one in which it stands."""
+    line = statement_of(here.above)
+    for above in here.above:
+        block = getattr(above, "body", None)
+        if isinstance(block, list) and any(one is line for one in block):
+            k = next(k for k, one in enumerate(block) if one is line)
+            return [*block[max(k - 1, 0) : k], *block[k + 1 : k + 2]]
+    return []
 
 
 def _is_a_centre_of_another(here: Here, scope: Scope, name: str) -> bool:

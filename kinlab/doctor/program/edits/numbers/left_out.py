@@ -1,0 +1,83 @@
+"""What a program leaves out though it has its like: the tool's offset, a rotor's term."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from kinlab.doctor.bytecode.syntax import copied, nodes
+from kinlab.doctor.program.edits.numbers.as_the_arm import typed
+from kinlab.doctor.program.edits.scope.forms import summands
+from kinlab.doctor.program.places import Here, ProgramEdit
+from kinlab.model.dh import DHTable
+from kinlab.tolerances import TOLERANCES
+
+_TOOL, _ROTOR = 1.05, 1.04
+"""Cost of the tool's offset where noughts stand, and of rotors that are left out beside others."""
+_FEWEST = 2
+"""Rotors that are there, of which others are missed."""
+
+
+def at_the_tool(here: Here, table: DHTable, given: Sequence[float]) -> Iterator[ProgramEdit]:
+    """The tool's point for the last frame's origin: ``[0, 0, 0.107, 1]`` for ``[0, 0, 0, 1]``."""
+    row = [getattr(one, "value", None) for one in getattr(here.node, "elts", ())]
+    if row not in ([0, 0, 0, 1], [0, 0, 0]) or isinstance(here.parent, ast.List | ast.Tuple):
+        return
+    point = np.asarray(table.tool, dtype=float)[:3, 3]
+    if point.any() and not any(
+        np.isclose(abs(x), given, rtol=TOLERANCES.same_number).any() for x in point if x
+    ):
+        new = [typed(float(x)) if x else ast.Constant(0) for x in point]
+        yield replace(
+            here.within(here.node, "elts", [*new, *here.node.elts[3:]], "number", _TOOL),
+            of_the_arm=True,
+        )
+
+
+def rotors_left_out(here: Here, table: DHTable) -> Iterator[ProgramEdit]:
+    """A rotor's term where those of other joints stand: ``0.3*v[0]**2 + 0.02*v[3]**2``."""
+    outer = here.parent
+    if not isinstance(here.node, ast.BinOp) or not isinstance(here.node.op, ast.Add):
+        return
+    if isinstance(outer, ast.BinOp) and isinstance(outer.op, ast.Add):
+        return  # of the whole sum
+    rotors = [float(link.armature) for link in table.links]
+    told: dict[int, ast.expr] = {}
+    for term in summands(here.node):
+        sizes = [x for x in nodes(term) if isinstance(getattr(x, "value", None), float)]
+        places_ = {k for x in nodes(term) if (k := _joint_of(x)) is not None}
+        if len(sizes) == 1 and len(places_) == 1:
+            (k,) = places_
+            if k < len(rotors) and sizes[0].value == rotors[k]:  # type: ignore[attr-defined]
+                told[k] = term
+    left = [k for k, x in enumerate(rotors) if x and k not in told]
+    if len(told) < _FEWEST or not left:
+        return
+    (j, like), *_rest = told.items()
+    new: ast.expr = here.node
+    for k in left:
+        new = ast.BinOp(new, ast.Add(), _OfJoint(j, k, rotors[j], rotors[k]).visit(copied(like)))
+    yield replace(here.instead(new, "missing term", _ROTOR), of_the_arm=True)
+
+
+def _joint_of(node: ast.AST) -> int | None:
+    """The index of an entry of a row: 2 of ``v[2]``."""
+    key = getattr(node, "slice", None) if isinstance(node, ast.Subscript) else None
+    value = getattr(key, "value", None)
+    return value if type(value) is int else None
+
+
+class _OfJoint(ast.NodeTransformer):
+    """Another joint's index and number for a joint's."""
+
+    def __init__(self, old: int, new: int, size: float, other: float) -> None:
+        self.old, self.new, self.size, self.other = old, new, size, other
+
+    def visit_Constant(self, node: ast.Constant) -> ast.Constant:
+        return ast.Constant(self.other) if node.value == self.size else node
+
+    def visit_Subscript(self, node: ast.Subscript) -> ast.expr:
+        return ast.Subscript(node.value, ast.Constant(self.new), node.ctx)
