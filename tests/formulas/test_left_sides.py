@@ -85,3 +85,67 @@ def test_a_factor_that_a_name_has_too_much_is_told_there() -> None:
     text = "M12 = I2 + m2*lc2**2 + b*cos(q2), b = 2*m2*l1*lc2"
     (cause,) = kl.diagnose("planar2r_rods", "mass_matrix[0,1]", text).causes
     assert cause.sentence.startswith("b: ")
+
+
+LAST = r"m_3\left(\frac{l_3^2}{3} + \frac{l_2 l_3}{2}c_3 + \frac{l_1 l_3}{2}c_{23}\right)"
+FIRST = r"I_3 + m_3(l_{c3}^2 + l_2 l_{c3}c_3 + l_1 l_{c3}c_{23})"
+
+
+@pytest.mark.parametrize("which", [0, 1])
+def test_a_step_that_is_a_product_in_parentheses_is_judged(which) -> None:
+    """``m_3(...)`` is no name with a state behind it, and no step is passed over for it."""
+    steps = [FIRST, LAST]
+    assert kl.diagnose("planar3r", "mass_matrix[0,2]", f"$M_{{13}} = {' = '.join(steps)}$").agrees
+    steps[which] = steps[which].replace("c_{23}", "c_2")
+    found = kl.diagnose("planar3r", "mass_matrix[0,2]", f"$M_{{13}} = {' = '.join(steps)}$")
+    assert "c_{23}" in found.causes[0].sentence
+
+
+def test_rates_in_parentheses_are_a_product() -> None:
+    text = r"$C_{12} = -m_2 l_1 l_{c2}s_2(\dot q_1 + \dot q_2) = h(\dot q_1 \dot q_2), h = -m_2 l_1 l_{c2}s_2$"
+    assert not kl.diagnose("planar2r_rods", "coriolis_matrix[0,1]", text).agrees
+
+
+@pytest.mark.parametrize(
+    "state", ["(q)", r"(\theta)", r"\left(q_1, q_2\right)", r"(\boldsymbol{q})"]
+)
+def test_a_state_behind_a_name_still_says_nothing(state) -> None:
+    assert kl.diagnose("planar2r_rods", "mass_matrix[0,1]", f"$M_{{12}}{state} = {M12}$").agrees
+
+
+def test_an_index_is_the_one_that_is_asked_for() -> None:
+    text = "tau[2] = fx*cos(q1)*sin(q2) + fy*sin(q1)*sin(q2) + fz*cos(q2)"
+    assert kl.diagnose("stanford", "statics[2]", text).agrees
+    with pytest.raises(ExpressionError, match="counted from 0"):
+        kl.diagnose("stanford", "statics[1]", text)
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "text", "right", "slip"),
+    [
+        ("planar2r", "gravity_torques[1]", "Ableiten der potentiellen Energie nach den Gelenkwinkeln liefert g2 = m2*g*l2*cos(q1+q2)", "cos(q1+q2)", "cos(q2)"),
+        ("planar2r", "inverse_dynamics[1]", "Für das zweite Gelenk erhalte ich tau2 = m2*l2^2*(qdd1+qdd2) + m2*l1*l2*c2*qdd1 + m2*l1*l2*s2*qd1^2 + m2*g*l2*c12", "l2*s2*qd1^2", "l2*s2*qd1"),
+        ("planar2r", "statics[1]", "El par de la segunda articulación se obtiene con la traspuesta: tau2 = -l2*s12*fx + l2*c12*fy + nz", "l2*c12*fy + nz", "l2*c12*fx + nz"),
+        ("single_link", "inverse_dynamics", "由动量矩定理，关节力矩为 tau = m*l^2/3*qdd + m*g*l/2*cos(q)", "m*l^2/3", "m*l^2/12"),
+        ("planar2r", "mass_matrix_dot[0,0]", "Since only $q_2$ enters $M$, we have $\\dot M_{11} = -2m_2 l_1 l_2 s_2 \\dot q_2$.", "s_2 \\dot q_2", "c_2 \\dot q_2"),
+    ],
+)  # fmt: skip
+def test_words_of_a_derivation_are_no_reason_not_to_judge(robot, entry, text, right, slip) -> None:
+    assert kl.diagnose(robot, entry, text).agrees
+    assert kl.diagnose(robot, entry, text.replace(right, slip)).causes
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "Im Gleichgewicht gilt",
+        "At equilibrium",
+        "For the inverted arm",
+        "平衡时",
+        "For the folded arm",
+    ],
+)
+def test_words_of_a_state_are_one(words) -> None:
+    """What may hold only there is not called wrong."""
+    with pytest.raises(ExpressionError, match="were not read|may change"):
+        kl.diagnose("planar2r", "gravity_torques[1]", f"{words} g2 = m2*g*l2")

@@ -1,0 +1,180 @@
+"""What stands in a line beside, what others of its kind have, what the program's own functions do.
+
+Every program is right before the slip; what is said makes it right, and is what was there.
+"""
+
+from __future__ import annotations
+
+import pytest
+from hand_programs import told_in_its_line, with_slips, written
+
+import kinlab as kl
+
+RODS = """
+import numpy as np
+l1, l2, e = 0.035, 0.0551, 0.0125
+side = np.array([1.0, -1.0])
+
+def f(p, mode):
+    px = p[0] - side*e
+    py = np.full(2, p[1])
+    far = px**2 + py**2
+    k = (far + l1**2 - l2**2)/2
+    h = np.sqrt(l1**2*far - k**2)
+    ux, uy = (k*px + mode*h*py)/(l1*far), (k*py - mode*h*px)/(l1*far)
+    wx = (p[0] - side*e - l1*ux)/l2
+    wy = (p[1] - l1*uy)/l2
+    return np.stack([wx, wy], axis=1)
+"""
+RATES = """
+import numpy as np
+L1, L2, E = 0.3, 0.5, 0.2/2**0.5
+
+def perp(a):
+    return np.array([-a[1], a[0]])
+
+def f(p, v, mode):
+    out = []
+    for s, x0 in zip(mode, (E, -E)):
+        r = np.array([p[0] - x0, p[1]])
+        n = np.linalg.norm(r)
+        c = (n**2 + L1**2 - L2**2)/(2*n*L1)
+        u = c*r/n - s*np.sqrt(1 - c**2)*perp(r/n)
+        w = (r - L1*u)/L2
+        out.append(np.linalg.solve(np.column_stack([L1*perp(u), L2*perp(w)]), v)[0])
+    return np.array(out)
+"""
+HEIGHTS = """
+from math import cos, sin
+
+def f(q):
+    r, h, E = (0.0, 0.0, 1.0), 0.0, 0.0
+    table = [(0, 0, 1), (0.4318, 0, 0), (0.0203, 0.15005, -1), (0, 0.4318, 1), (0, 0, -1), (0, 0, 0)]
+    kg = [0, 17.4, 4.8, 0.82, 0.34, 0.09]
+    com = [(0, 0, 0), (-0.3638, 0.006, 0.2275), (-0.0203, -0.0141, 0.07), (0, 0.019, 0), (0, 0, 0),
+           (0, 0, 0.032)]
+    for t, (a, d, sa), m, (x, y, z) in zip(q, table, kg, com):
+        ca, u, v = 1 - abs(sa), r[0]*cos(t) + r[1]*sin(t), r[1]*cos(t) - r[0]*sin(t)
+        h += a*u + d*r[2]
+        r = (u, v*ca + r[2]*sa, r[2]*ca - v*sa)
+        E += m*9.81*(h + r[0]*x + r[1]*y + r[2]*z)
+    return E
+"""
+ROTORS = """
+from math import cos, sin
+
+def f(q, v):
+    w2, w4 = v[0] + v[1], v[0] + v[1] - v[3]
+    T = 0.5*(0.1 + 7.0*0.165**2)*v[0]**2 + 0.5*0.055*w2**2
+    T += 0.5*5.0*(0.325**2*v[0]**2 + (0.145**2 + 0.005**2)*w2**2)
+    T += 5.0*0.325*v[0]*w2*(0.145*cos(q[1]) + 0.005*sin(q[1]))
+    tip = 0.325**2*v[0]**2 + 0.275**2*w2**2 + 2*0.325*0.275*v[0]*w2*cos(q[1]) + v[2]**2
+    away = 0.325*v[0]*cos(q[1] - q[3]) + 0.275*w2*cos(q[3])
+    T += 0.5*1.6*tip + 0.5*0.4*(0.01**2*w4**2 + 2*0.01*w4*away) + 0.5*0.0008*w2**2 + 0.5*0.0006*w4**2
+    T += 0.5*(0.3*v[0]**2 + 0.1*v[1]**2 + 2.0*v[2]**2 + 0.02*v[3]**2)
+    return T
+"""
+TIP = """
+import numpy as np
+ROWS = [(0, 0, .333), (0, -1, 0), (0, 1, .316), (.0825, 1, 0), (-.0825, -1, .384), (0, 1, 0),
+        (.088, 1, 0)]
+
+def f(q):
+    T, frames = np.eye(4), []
+    for (a, s, d), t in zip(ROWS, q):
+        c = 1.0 - abs(s)
+        T = T @ np.array([[np.cos(t), -np.sin(t), 0, a], [np.sin(t)*c, np.cos(t)*c, -s, -s*d],
+                          [np.sin(t)*s, np.cos(t)*s, c, c*d], [0, 0, 0, 1]])
+        frames.append(T)
+    tip = T @ np.array([0, 0, 0.107, 1])
+    return np.column_stack([np.hstack((np.cross(F[:3, 2], tip[:3] - F[:3, 3]), F[:3, 2]))
+                            for F in frames])
+"""
+
+
+@pytest.mark.parametrize(
+    ("robot", "quantity", "text", "right", "slip"),
+    [
+        ("plotclock", "fivebar_rods", RODS, "(p[0] - side*e - l1*ux)", "(p[0] - l1*ux)"),
+        ("isotropic", "fivebar_rates", RATES, "L2*perp(w)", "L2*w"),
+        ("puma560", "potential_energy", HEIGHTS, "a*u + d*r[2]", "a*u + d*v"),
+        ("scara", "kinetic_energy", ROTORS, " + 2.0*v[2]**2 + 0.02", " + 0.02"),
+        ("panda", "jacobian", TIP, "[0, 0, 0.107, 1]", "[0, 0, 0, 1])\n    return"),
+    ],
+    ids=["sum", "function", "entry", "rotor", "tip"],
+)
+def test_what_is_near_at_hand_is_told_in_its_line(robot, quantity, text, right, slip, tmp_path):
+    if slip.endswith("return"):
+        right, slip = right + ")\n    return", slip
+    told_in_its_line(robot, quantity, text, right, slip, tmp_path / "hand.py")
+
+
+FALLING = """
+import numpy as np
+
+class Arm:
+    m, l, I = [3.0, 2.0, 1.0], [0.5, 0.4, 0.25], [0.0625, 2.0*0.4**2/12, 0.25**2/12]
+    gravity = np.array([0, -9.81, 0])
+
+    def outward(self, q, v, a):
+        self.at, self.c, self.F, self.N = [], [], [], []
+        t = w = dw = 0.0
+        p, acc = np.zeros(3), np.zeros(3)
+        for k in range(3):
+            t, w, dw = t + q[k], w + v[k], dw + a[k]
+            way = self.l[k]*np.array([np.cos(t), np.sin(t), 0])
+            turned = dw*np.array([-way[1], way[0], 0]) - w**2*way
+            self.at.append(p)
+            self.c.append(p + way/2)
+            self.F.append(self.m[k]*(acc + turned/2 - self.gravity))
+            self.N.append(self.I[k]*dw)
+            p, acc = p + way, acc + turned
+
+    def inward(self):
+        return [sum(np.cross(self.c[j] - self.at[k], self.F[j])[2] + self.N[j] for j in range(k, 3))
+                for k in range(3)]
+
+arm = Arm()
+
+def f(q, v, a):
+    arm.outward(q, v, a)
+    return arm.inward()
+"""
+
+
+def test_gravity_that_falls_is_right_as_it_is_typed(tmp_path) -> None:
+    """In a class, too: the sign in the line that uses it is told, and not the number's."""
+    wrong = with_slips(FALLING, [("turned/2 - self.gravity", "turned/2 + self.gravity")])
+    (tmp_path / "hand.py").write_text(wrong)
+    found = kl.diagnose("planar3r", "inverse_dynamics", written(wrong, tmp_path / "hand.py"))
+    (cause,) = found.causes
+    assert "turned/2 - self.gravity" in cause.sentence.partition("; or else")[0]
+
+
+POINTS = """
+from math import cos, sin
+L, LC = (0.5, 0.4, 0.25), (0.25, 0.2, 0.125)
+
+def f(q, v, a):
+    ax = ay = t = w = dw = 0.0
+    out = []
+    for k in range(3):
+        t, w, dw = t + q[k], w + v[k], dw + a[k]
+        r, n = (cos(t), sin(t)), (-sin(t), cos(t))
+        acc = lambda s: (ax + s*(dw*n[0] - w**2*r[0]), ay + s*(dw*n[1] - w**2*r[1]))
+        bx, by = acc(LC[k])
+        out.append([bx*r[0] + by*r[1], bx*n[0] + by*n[1], 0.0])
+        ax, ay = acc(L[k])
+    return out
+"""
+
+
+def test_an_edit_of_the_data_is_in_no_row_of_the_text(tmp_path) -> None:
+    """Two slips, between which the data are looked at, end in no fault."""
+    slips = [("ax, ay = acc(L[k])", "ax, ay = acc(LC[k])")]
+    slips += [("dw*n[0] - w**2*r[0]), ay + s*(dw*n[1] - w**2*r[1]", "dw*n[0] - w*r[0]), ay + s*(dw*n[1] - w*r[1]")]  # fmt: skip
+    wrong = with_slips(POINTS, slips)
+    (tmp_path / "hand.py").write_text(wrong)
+    found = kl.diagnose("planar3r", "com_accelerations", written(wrong, tmp_path / "hand.py"))
+    assert "acc(L[k])" in found.sentence
+    assert found.sentence.count("w**2") == 2
