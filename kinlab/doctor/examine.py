@@ -269,6 +269,8 @@ def _possible(
     if silent is None:
         causes, partial = [*told[0]], told[1]
     visible = bool(causes) and len(causes[0].kinds) <= 1
+    # a formula that solves for accelerations holds no step of a recursion
+    solved = bool(written) and case.quantity.name == "forward_dynamics"
     bare = signs and _bare_signs(engine)
     read = same and not written and (silent is not None or not bare)
     looking = case.looked_through(engine, _left(worst)) if read else iter(())
@@ -287,7 +289,7 @@ def _possible(
     if not visible:
         # a slip that stands in the text comes before any step of a derivation
         loose = case if written else replace(case, slack=_left(worst))
-        ways = [] if (written and causes) or signs else ready(case)
+        ways = [] if (written and (causes or solved)) or signs else ready(case)
 
         def backed(found: list[Found]) -> list[Cause]:
             """Of a program's steps only those whose numbers it comes to; of formulas none."""
@@ -358,7 +360,7 @@ def _possible(
     if not causes and not signs:
         split = apart(case)
         # two readings of a program of which no line explains it fit by accident more often
-        if program is None:
+        if program is None and not solved:
             slack = min(_left(worst), TOLERANCES.slips_leave)
             few = case if written else replace(case, slack=slack)
             found_ = one_for_each_kind(few, ways, split)

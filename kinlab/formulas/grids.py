@@ -173,6 +173,71 @@ def _total(text: str, place: str, writing: Hand) -> Grid | None:
     if not grids:
         return None
     dollars = "$" if is_latex(text) else ""
+    while found := next(filter(_holds_matrices, _INNERMOST.finditer(held)), None):
+        grids.append(_in_brackets(found, grids, place, dollars, writing))
+        held = _marked(held, found, len(grids) - 1)
+    while found := _INVERTED.search(held):
+        grids.append(_inverse(grids[int(found[1])], place))
+        held = _marked(held, found, len(grids) - 1)
+    return _summed(held, grids, place, dollars, writing)
+
+
+_INNERMOST = re.compile(
+    r"(?P<function>(?:(?:(?:np|numpy)\.)?linalg\.|sp\.)?(?:inv|solve)\s*)?(?:\\left\s*)?\("
+    r"(?P<inside>[^()]*(?:\([^()\x01]*\)[^()]*)*)\)",
+)
+_INVERTED = re.compile(
+    r"\x01(\d+)\x01\s*(?:(?:\^|\*\*)\s*(?:\{\s*-\s*1\s*\}|\(\s*-\s*1\s*\)|-\s?1)"
+    r"|\\(?![A-Za-z,;:! \\])|\.inv\(\)|\\(?=\s*\x01))"
+)
+_VECTORS = ("tau", "u", "Q")
+"""Names of vectors that are put in by their entries."""
+
+
+def _marked(held: str, found: re.Match[str], k: int) -> str:
+    """The text with the mark of a matrix for a piece."""
+    return f"{held[: found.start()]}\x01{k}\x01{held[found.end() :]}"
+
+
+def _holds_matrices(found: re.Match[str]) -> bool:
+    """Whether brackets hold one sum of matrices, or two that a system of equations has."""
+    function = (found["function"] or "").strip()
+    count = len(parts_at(found["inside"], ","))
+    return "\x01" in found["inside"] and count == 1 + function.endswith("solve")
+
+
+def _in_brackets(
+    found: re.Match[str], grids: list[Grid], place: str, dollars: str, writing: Hand
+) -> Grid:
+    """What brackets around matrices hold, its inverse, or what solves a system of equations."""
+    function = (found["function"] or "").strip().rpartition(".")[2]
+    inside = re.sub(r"\\(?:left|right)\s*$", "", found["inside"])
+    first, *others = parts_at(inside, ",")
+    made = _summed(first, grids, place, dollars, writing)
+    if function:
+        made = _inverse(made, place)
+    for other in others:
+        made = _product(made, _summed(other, grids, place, dollars, writing), place)
+    return made
+
+
+def _inverse(grid: Grid, place: str) -> Grid:
+    """The inverse of a number, or of a matrix of two rows, by its cofactors.
+
+    Raises:
+        ExpressionError: it is larger.
+    """
+    if len(grid) == len(grid[0]) == 1:
+        return [[f"1/({grid[0][0]})"]]
+    if len(grid) != len(grid[0]) or len(grid) > len("ab"):
+        raise refused(place, N_("the inverse of a matrix of three rows or more; write it out"))
+    (a, b), (c, d) = ([_single(cell) for cell in row] for row in grid)
+    whole = f"({a}*{d} - {b}*{c})"
+    return [[f"{d}/{whole}", f"-{b}/{whole}"], [f"-{c}/{whole}", f"{a}/{whole}"]]
+
+
+def _summed(held: str, grids: list[Grid], place: str, dollars: str, writing: Hand) -> Grid:
+    """The sum of products in a text with marks for its matrices."""
     total: Grid | None = None
     for sign, term in _terms(held, place):
         made: Grid = [["1"]]
@@ -185,6 +250,7 @@ def _total(text: str, place: str, writing: Hand) -> Grid | None:
         if sign == "-":
             made = [[cell if cell == "0" else f"-{_single(cell)}" for cell in row] for row in made]
         total = made if total is None else _sum(total, made, place)
+    assert total is not None
     return total
 
 
@@ -279,11 +345,20 @@ def _product(left: Grid, right: Grid, place: str) -> Grid:
 
 
 def _sum(left: Grid, right: Grid, place: str) -> Grid:
+    left, right = _by_entries(left, right), _by_entries(right, left)
     if (len(left), len(left[0])) != (len(right), len(right[0])):
         raise refused(place, N_("matrices of different sizes have no sum"))
     return [
         [_added(a, b) for a, b in zip(x, y, strict=True)] for x, y in zip(left, right, strict=True)
     ]
+
+
+def _by_entries(one: Grid, other: Grid) -> Grid:
+    """A vector that stands for itself as the column that is added to it: ``tau - [a; b]``."""
+    (first, *_more), *_rows = one
+    if len(one) == 1 and first.lstrip("-") in _VECTORS and len(other[0]) == 1 < len(other):
+        return [[f"{first}{k + 1}"] for k in range(len(other))]
+    return one
 
 
 def _added(one: str, other: str) -> str:

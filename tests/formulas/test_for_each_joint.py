@@ -175,7 +175,11 @@ def test_a_part_of_a_chain_that_is_no_arithmetic() -> None:
     assert "cos(q1) should be sin(q1)" in wrong.causes[0].sentence
     assert "was not judged" in str(wrong)
     with pytest.raises(KinlabError, match="not a number"):  # nobody knows why it is wrong
-        _agrees("planar2r", "fk[1,3]", text.replace("= l1*sin(q1) + l2*sin(q1+q2)", "= 0.31*q1^3/(1 + q2^2)"))
+        _agrees(
+            "planar2r",
+            "fk[1,3]",
+            text.replace("= l1*sin(q1) + l2*sin(q1+q2)", "= 0.31*q1^3/(1 + q2^2)"),
+        )
 
 
 @pytest.mark.parametrize(

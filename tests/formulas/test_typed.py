@@ -460,11 +460,33 @@ def test_sums_and_products_of_matrices(entry, text):
     assert found.agrees, str(found)
 
 
+ROWS = "[(m1+m2)*l1^2 + m2*l2^2 + 2*m2*l1*l2*cos(q2), m2*l2^2 + m2*l1*l2*cos(q2); m2*l2^2 + m2*l1*l2*cos(q2), m2*l2^2]"
+REST = f"[-m2*l1*l2*sin(q2)*(2*dq1*dq2 + dq2^2) + {G1}; m2*l1*l2*sin(q2)*dq1^2 + {G2}]"
+SOLVED = [
+    "M = {M}\nn = {n}\nqdd = inv(M)*(tau - n)",
+    "M = {M}\nn = {n}\nqdd = M \\ (tau - n)",
+    "M = {M}\nn = {n}\nqdd = np.linalg.solve(M, tau - n)",
+    "qdd = inv({M})*([tau1; tau2] - {n})",
+]
+
+
+@pytest.mark.parametrize("text", SOLVED)
+def test_accelerations_that_are_solved_for(text):
+    """Right ones agree; of wrong ones nothing is named that does not stand there."""
+    right = text.format(M=ROWS, n=REST)
+    found = diagnosed("forward_dynamics", right)
+    assert found.agrees, str(found)
+    wrong = diagnosed("forward_dynamics", right.replace("- n)", "+ n)").replace("] - [", "] + ["))
+    assert not wrong.agrees
+    assert not wrong.causes, str(wrong)
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [
         (r"\begin{bmatrix}1&0\end{bmatrix}\begin{bmatrix}1&0\end{bmatrix}", "has no product"),
-        (r"m_2(\begin{bmatrix}1\\0\end{bmatrix}+\begin{bmatrix}1\\1\end{bmatrix})", "in brackets"),
+        (r"m_2(\begin{bmatrix}1\\0\end{bmatrix}, \begin{bmatrix}1\\1\end{bmatrix})", "in brackets"),
+        ("inv([1, 0, 0; 0, 1, 0; 0, 0, 1])*[a; b; c]", "three rows or more"),
         (r"\begin{bmatrix}1\\0\end{bmatrix} \times \begin{bmatrix}1\\0\end{bmatrix}", "beside"),
         (r"\begin{bmatrix}1\\0\end{bmatrix} + \begin{bmatrix}1\\0\\1\end{bmatrix}", "no sum"),
     ],
