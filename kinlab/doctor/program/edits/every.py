@@ -7,6 +7,7 @@ a term too many. An edit costs what it is far-fetched; nothing that never ran is
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import pi
@@ -27,7 +28,13 @@ from kinlab.doctor.program.edits.forgotten import (
     of_kinds_of_joints,
     with_slices,
 )
-from kinlab.doctor.program.edits.frames import columns_of, of_columns, of_links, of_origins
+from kinlab.doctor.program.edits.frames import (
+    along_its_own_axis,
+    columns_of,
+    of_columns,
+    of_links,
+    of_origins,
+)
 from kinlab.doctor.program.edits.guards import choices, masks, of_guards
 from kinlab.doctor.program.edits.numbers.data import of_data
 from kinlab.doctor.program.edits.scope.forms import statement_of, summands
@@ -83,6 +90,8 @@ _FILLED = 1.04
 """Cost of another array that is filled, too."""
 _ALL_BEFORE = 1.14
 """Cost of all entries up to the one that a value is put into."""
+_MISCALLED = 0.06
+"""What it costs more that a cosine is called a sine."""
 _ROWS = 6
 """Rows of as many joints of which any may share out what is added to one entry."""
 
@@ -111,6 +120,8 @@ def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[Pro
                     own = _set_here(here) if isinstance(node, ast.Name) else []
                     if own:
                         every = (*(_unchanged(x, own) for x in every),)
+                    if _is_as_called(here):
+                        every = (*(_not_as_called(x) for x in every),)
                     if _says_where(here):
                         every = (*(replace(x, cost=max(x.cost, _WRITTEN)) for x in every),)
                     beside = _rotations_beside(here, observed)
@@ -142,6 +153,28 @@ def _set_here(here: Here) -> list[str]:
         return []
     pairs = (pair for target in line.targets for pair in paired(target, line.value))
     return [one.id for one, what in pairs if what is here.node and isinstance(one, ast.Name)]
+
+
+def _is_as_called(here: Here) -> bool:
+    """Whether a name that is called so is set to a sine, or a cosine: ``c2 = cos(q2)``."""
+    line = statement_of(here.above)
+    if not isinstance(here.node, ast.Call) or not isinstance(line, ast.Assign):
+        return False
+    pairs = (pair for target in line.targets for pair in paired(target, line.value))
+    own = [one.id for one, what in pairs if what is here.node and isinstance(one, ast.Name)]
+    function = called(here.node)
+    return function in ("sin", "cos") and any(
+        one[0].lower() == function[0] and _WAVE.fullmatch(one) for one in own
+    )
+
+
+_WAVE = re.compile(r"(?:cos|sin|[cs])_?(?:\d{1,4}|[a-z]{1,2}\d?)", re.IGNORECASE)
+"""What sines and cosines are called: c2, s23, ca, sin_t."""
+
+
+def _not_as_called(edit: ProgramEdit) -> ProgramEdit:
+    """An edit after which a cosine is called a sine, which is dearer."""
+    return replace(edit, cost=edit.cost + _MISCALLED) if edit.kind == "sin/cos" else edit
 
 
 def _terms_beside(here: Here) -> set[str]:
@@ -408,6 +441,7 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Program
             yield from _target(here, target, scope, observed)
             yield from across(here)
     if isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Subscript):
+        yield from along_its_own_axis(here, node.target, scope)
         yield from _target(here, node.target, scope, observed)
         yield from _for_all_joints(here, scope, observed)
     if isinstance(node, ast.Assign | ast.AugAssign | ast.Return | ast.Expr):

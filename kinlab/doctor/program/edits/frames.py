@@ -185,6 +185,29 @@ def _sines_and_cosines(scope: Scope) -> Iterator[tuple[ast.expr, ast.expr]]:
             yield of[0], of[1]
 
 
+def along_its_own_axis(here: Here, target: ast.Subscript, scope: Scope) -> Iterator[ProgramEdit]:
+    """A way along a frame's own axis for one of the base's: ``T[:3, 3] += x*T[:3, 2]``.
+
+    Args:
+        here: the statement, ``T[2, 3] += x``.
+        target: what it writes into.
+        scope: what is a pose there.
+    """
+    key = [getattr(one, "value", None) for one in getattr(target.slice, "elts", ())]
+    if len(key) != _PAIR or key[1] != _AXES or key[0] not in range(_AXES):
+        return
+    if scope.is_pose(target.value):
+        above = ast.Slice(None, ast.Constant(_AXES), None)
+        origin = ast.Subscript(
+            target.value, ast.Tuple([above, ast.Constant(_AXES)], ast.Load()), ast.Store()
+        )
+        axis = ast.Subscript(
+            target.value, ast.Tuple([above, ast.Constant(key[0])], ast.Load()), ast.Load()
+        )
+        way = ast.BinOp(here.node.value, ast.Mult(), axis)
+        yield here.instead(ast.AugAssign(origin, here.node.op, way), "axes", _TURNED_BACK)
+
+
 # -------- Columns that have names
 
 

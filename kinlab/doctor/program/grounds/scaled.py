@@ -271,7 +271,8 @@ def _plain(value: float) -> bool:
 
 def _one_for_several(found: Sequence[ProgramNumber], kinds: Kinds) -> bool:
     """Whether one number is the masses of several links, which are heavier each by another part."""
-    named = np.array([one.value for one in found if one.alone])
+    may = (one for one in found if one.alone or one.given or may_be_of_one_arm(one.value))
+    named = np.array([one.value for one in may])
     masses = [known[0] for what, _k, _by, known in kinds if what == "mass" and known[0]]
     return any(1 <= np.isclose(named, m).sum() < np.isclose(masses, m).sum() for m in masses)
 

@@ -396,7 +396,8 @@ class LineSearch:
             one
             for one in ahead
             if one is first or row_of(one.edits[-1]) != row
-            if abs(one.cost - first.cost) <= SAME and self.likely(one.edits[-1]) <= least
+            if (abs(one.cost - first.cost) <= SAME and self.likely(one.edits[-1]) <= least)
+            or _turns_the_product(first.edits[-1], one.edits[-1])
         ]
         rivals = [one for one in same[1:2] if not _add_the_same(first.edits[-1], one.edits[-1])]
         first = replace(first, rivals=tuple(rivals))
@@ -588,6 +589,13 @@ class LineSearch:
             self.parallel.append(repair)
         self.here += [repair] if len(several) == 1 else []
         return None
+
+
+def _turns_the_product(sign: ProgramEdit, other: ProgramEdit) -> bool:
+    """Whether a cross product the other way round does what a name's other sign does."""
+    node = other.node
+    crossed = isinstance(node, ast.Call) and called(node) == "cross" and other.kind == "order"
+    return sign.kind == "sign" and isinstance(sign.node, ast.Name) and crossed
 
 
 def _add_the_same(one: ProgramEdit, other: ProgramEdit) -> bool:
