@@ -178,3 +178,82 @@ def test_an_edit_of_the_data_is_in_no_row_of_the_text(tmp_path) -> None:
     found = kl.diagnose("planar3r", "com_accelerations", written(wrong, tmp_path / "hand.py"))
     assert "acc(L[k])" in found.sentence
     assert found.sentence.count("w**2") == 2
+
+
+SHARED = """
+import numpy as np
+
+def f(q):
+    s2, c2 = np.sin(q[1]), np.cos(q[1])
+    elbow = 0.089159 - 0.425*s2
+    wrist = elbow - 0.39225*np.sin(q[1] + q[2])
+    tip = wrist - 0.09465*np.cos(q[1] + q[2] + q[3])
+    h2, h3 = elbow + 0.145*s2, wrist + 0.14225*np.sin(q[1] + q[2])
+    return 9.81*(3.7*0.089159 + 8.393*h2 + 2.275*h3 + 1.219*(wrist + wrist) + 0.1879*tip)
+"""
+ALONG = """
+import numpy as np
+TABLE = \"\"\"
+0 0 0.333
+0 -90 0
+0 90 0.316
+0.0825 90 0
+-0.0825 -90 0.384
+0 90 0
+0.088 90 0
+\"\"\"
+ROWS = [tuple(map(float, line.split())) for line in TABLE.strip().splitlines()]
+
+def f(q):
+    T = np.eye(4)
+    for (a, turn, d), t in zip(ROWS, q):
+        c, s, ca, sa = np.cos(t), np.sin(t), np.cos(np.radians(turn)), np.sin(np.radians(turn))
+        T = T @ np.array([[c, -s, 0, a], [s*ca, c*ca, -sa, -d*sa], [s*sa, c*sa, ca, d*ca],
+                          [0, 0, 0, 1]])
+    T[:3, 3] += 0.107*T[:3, 2]
+    return T
+"""
+
+
+def test_one_number_for_two_masses_is_no_reason_to_doubt(tmp_path) -> None:
+    """No arm with two other masses can be put in; and the cosine is one by its name."""
+    right, slip = "elbow + 0.145*s2", "elbow + 0.145*c2"
+    told_in_its_line("ur5", "potential_energy", SHARED, right, slip, tmp_path / "hand.py")
+
+
+def test_a_cosine_that_is_set_to_a_sine_is_still_told_there(tmp_path) -> None:
+    right, slip = "np.sin(q[1]), np.cos(q[1])\n", "np.cos(q[1]), np.cos(q[1])\n"
+    told_in_its_line("ur5", "potential_energy", SHARED, right, slip, tmp_path / "hand.py")
+
+
+def test_a_way_along_the_base_s_axis_is_one_along_the_frame_s(tmp_path) -> None:
+    right, slip = "T[:3, 3] += 0.107*T[:3, 2]", "T[2, 3] += 0.107"
+    told_in_its_line("panda", "fk", ALONG, right, slip, tmp_path / "hand.py")
+
+
+CARRIED = """
+import numpy as np
+ALPHA = [0, np.pi/2, 0, -np.pi/2, np.pi/2, -np.pi/2]
+A, D = [0, 0, 0.4318, 0.0203, 0, 0], [0, 0, 0.15005, 0.4318, 0, 0]
+
+def one(q, rate):
+    w, v = np.zeros(3), np.zeros(3)
+    for k in range(6):
+        c, s, ca, sa = np.cos(q[k]), np.sin(q[k]), np.cos(ALPHA[k]), np.sin(ALPHA[k])
+        R = np.array([[c, s*ca, s*sa], [-s, c*ca, c*sa], [0, -sa, ca]])
+        P = np.array([A[k], -sa*D[k], ca*D[k]])
+        v = R @ (v + np.cross(w, P))
+        w = R @ w
+        w[2] += rate[k]
+    return np.r_[v, w]
+
+def f(q):
+    return np.array([one(q, e) for e in np.eye(6)]).T
+"""
+
+
+def test_a_sign_that_does_what_the_other_order_does_is_not_told_alone(tmp_path) -> None:
+    wrong = with_slips(CARRIED, [("np.cross(w, P)", "np.cross(P, w)")])
+    (tmp_path / "hand.py").write_text(wrong)
+    found = kl.diagnose("puma560_modified", "jacobian_tool", written(wrong, tmp_path / "hand.py"))
+    assert "np.cross(w, P)" in found.causes[0].sentence
