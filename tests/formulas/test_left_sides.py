@@ -149,3 +149,30 @@ def test_words_of_a_state_are_one(words) -> None:
     """What may hold only there is not called wrong."""
     with pytest.raises(ExpressionError, match="were not read|may change"):
         kl.diagnose("planar2r", "gravity_torques[1]", f"{words} g2 = m2*g*l2")
+
+
+TORQUE = "tau3 = -l3 s3 c12 Fx - l3 s3 s12 Fy + l3 c3 Fz + s12 Mx - c12 My"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"The torque of joint 3 is {TORQUE}. My answer.",
+        f"El par de la tercera articulación es {TORQUE}, con c12 = cos(q1+q2).",
+        f"My answer: {TORQUE}",
+    ],
+)
+def test_a_moment_is_no_word(text) -> None:
+    """``My`` was left out as the English word: a right formula was called wrong."""
+    assert kl.diagnose("spatial3r", "statics[2]", text).agrees
+
+
+@pytest.mark.parametrize(
+    ("entry", "text"),
+    [
+        ("forward_dynamics", "qdd = np.array([(tau - m*g*(l/2)*np.cos(q))/(m*l**2/3)])"),
+        ("mass_matrix", "M = [I + m*(l/2)^2] = [m*l^2/3] = [0.3]"),
+    ],
+)
+def test_a_list_of_one_number_is_that_number(entry, text) -> None:
+    assert kl.diagnose("single_link", entry, text).agrees

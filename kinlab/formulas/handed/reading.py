@@ -187,7 +187,7 @@ def as_formula(
     text = _AND_SO_ON.sub("", as_typed(text))
     unjudged = _("the step {words!r} was not judged")
     steps = [unjudged.format(words=one[0].strip("=& ")) for one in STEP.finditer(text)]
-    text, label = _without_label(_MIRRORED.sub("", _as_asked(of_packages(text), entry)))
+    text, label = _without_label(_MIRRORED.sub("", _as_asked(_unlisted(of_packages(text)), entry)))
     text = _HENCE.sub("\n", without_prompts(without_gaps(text)))
     text = _BOLD_SIDES.sub(lambda found: found[1] or f" {found[2]}", text)
     text = _BULLET.sub("", text)
@@ -242,6 +242,30 @@ _MIRRORED = re.compile(
 """What a symmetric matrix has on its other side, too: ``(symmetric, so M21 = M12)``."""
 _ASKED = re.compile(r"^(\s*)([A-Za-z]\w{0,20})\[(\d)\](?=\s*=(?!=))")
 _INDEX = re.compile(r"\w+\[(\d)\]")
+
+
+_LISTED = re.compile(r"\s*(?:(?:np|numpy|sp|sympy)\.)?(?:(?:array|Matrix)\s*\()?\s*(?=\[)")
+
+
+def _unlisted(text: str) -> str:
+    """``M = a = b`` of ``M = [a] = [b]``: lists of one number, as an arm of one joint has them."""
+    sides = text.split("=")
+    if "[" not in text or not any(map(_only, sides)) or "\\" in text:
+        return text
+    return "=".join(_only(side) or side for side in sides)
+
+
+def _only(side: str) -> str:
+    """What a list holds, if that is all that stands there and one number; else nothing."""
+    found = _LISTED.match(side)
+    begin = found.end() if found else 0
+    end = begin + closes(side[begin:]) if found else -1
+    inside = side[begin + 1 : end]
+    rest = side[end + 1 :].strip()
+    made = bool(found and "(" in found[0])
+    alone = end > begin and not re.search(r"[,;\[\]\n]", inside)
+    plain = alone and re.search(r"[-+*/^(\d]", inside) and rest == (")" if made else "")
+    return f" {inside.strip()} " if plain else ""
 
 
 def _as_asked(text: str, entry: str) -> str:

@@ -60,6 +60,8 @@ _LABEL = re.compile(
 )
 _SUBJECT = re.compile(r"(?<==)([^=,;]+)[,;]\s*I_?\{?[a-z]{0,2}\d\}?\s*$")
 """Whose moment of inertia a sentence behind a formula is about: ``..., I2 taken at the pivot``."""
+_OF_A_WRENCH = re.compile(r"[FfMmNn][xyz]")
+"""Names of forces and moments, of which one is a word, too: ``My``."""
 _SHORT = 4
 _LONG = 4
 """Letters from which on what is in no list is a word."""
@@ -163,6 +165,8 @@ def _is_word(word: str, text: str, found: re.Match[str]) -> bool:
     listed = is_listed(word)
     if is_program(word) or re.match(r"\s*&?\s*:?=", behind):
         return False
+    if _OF_A_WRENCH.fullmatch(word) and _ends_formula(front):
+        return False  # - c12 My, where ...
     dash = front.endswith("--")
     if (front[-1:] in ("*", "^", "+", "-", "=") and not dash) or (
         front[-1:] == "/" and front[-2:] != "//"

@@ -12,6 +12,7 @@ from kinlab.doctor.program.edits.chains import SUMS, chain, joined, opposite
 from kinlab.doctor.program.edits.scope.forms import Turned, statement_of, summands
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.entries import without_the_first
+from kinlab.doctor.program.edits.single.whole import plus
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, follow, number
 
@@ -237,6 +238,9 @@ def _is_given(here: Here, node: ast.expr) -> bool:
 
 def _entries_beside(node: ast.expr) -> Iterator[ast.expr]:
     """The entries before and behind one of a row: ``q[1]`` and ``q[3]`` of ``q[2]``."""
+    if isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Name):
+        for step in (1, -1):
+            yield ast.Subscript(node.value, plus(node.slice, step), ast.Load())
     if not isinstance(node, ast.Subscript) or not isinstance(node.slice, ast.Constant):
         return
     own = node.slice.value
@@ -326,13 +330,15 @@ def _owner(node: ast.expr) -> str:
 
 def _go_together(one: str, other: str) -> bool:
     """Whether names may be taken for one another: ``l1`` and ``l2``, ``s12`` and ``c12``."""
-    return one[0] == other[0] or (one[0] + other[0] in ("sc", "cs") and one[1:] == other[1:])
+    waves = one[0] + other[0] in ("sc", "cs") and one[1:] == other[1:]
+    letters = len(one) == len(other) == 1 and one.isupper() and other.isupper()  # A and B
+    return one[0] == other[0] or waves or letters
 
 
 def _plain(node: ast.Name | ast.Subscript) -> bool:
     if isinstance(node, ast.Name):
         return isinstance(node.ctx, ast.Load)
-    return isinstance(node.value, ast.Name) and isinstance(node.slice, ast.Constant)
+    return isinstance(node.value, ast.Name) and isinstance(node.slice, ast.Constant | ast.Name)
 
 
 class Renamed(ast.NodeTransformer):

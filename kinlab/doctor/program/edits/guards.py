@@ -5,7 +5,8 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
-from kinlab.doctor.bytecode.syntax import called, names, nodes
+from kinlab.doctor.bytecode.syntax import called, copied, names, nodes, text_of
+from kinlab.doctor.program.edits.scope.forms import block_of
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import Here, ProgramEdit, is_nothing
@@ -14,6 +15,8 @@ _GUARDED = 1.08
 """What it costs that a term counts for some joints only."""
 _PART = 0.18
 """What it costs more of a part of an expression."""
+_OF_THE_KIND = 1.06
+"""The same of what a sum gets for the other kind of joint."""
 _CHOSEN = 1.1
 """The same of a force or a moment, as the joint moves."""
 _CHOICE = 3
@@ -55,6 +58,7 @@ def of_guards(
     if isinstance(node, ast.Name) and shape is not None and node.id not in scope.unused:
         yield from _of_the_other_case(here, scope, tests, shape)
     if shape == _VECTOR and isinstance(here.parent, ast.Assign) and here.field == "value":
+        yield from _of_the_other_kind(here)
         yield from _of_columns(here, scope, tests)
     op = getattr(here.parent, "op", None)
     if shape == _VECTOR and isinstance(op, ast.MatMult) and isinstance(node, ast.Name):
@@ -87,6 +91,27 @@ def _of_the_other_case(
         for other in (ast.Name(one, ast.Load()) for one in idle):
             for both in ((here.node, other), (other, here.node)):
                 yield here.instead(ast.IfExp(test, *both), "condition", cost)
+
+
+def _of_the_other_kind(here: Here) -> Iterator[ProgramEdit]:
+    """What one kind of joint adds above, for the other: ``v = ... + (0 if hinge else rate*z)``."""
+    block, at = block_of(here.above)
+    for line in block[:at]:
+        if isinstance(line, ast.If) and not line.orelse and len(line.body) == 1:
+            for term in _added(line.body[0]):
+                chosen = ast.IfExp(copied(line.test), ast.Constant(0), copied(term))
+                new = ast.BinOp(here.node, ast.Add(), chosen)
+                yield here.instead(new, "missing term", _OF_THE_KIND)
+
+
+def _added(line: ast.stmt) -> Iterator[ast.expr]:
+    """What a statement adds to what it sets: ``rate*z`` of ``w = w + rate*z``."""
+    if isinstance(line, ast.AugAssign) and isinstance(line.op, ast.Add):
+        yield line.value
+    elif isinstance(line, ast.Assign) and isinstance(line.value, ast.BinOp):
+        summed = isinstance(line.value.op, ast.Add)
+        if summed and text_of(line.value.left) == text_of(line.targets[0]):
+            yield line.value.right
 
 
 def _tests_here(scope: Scope, tests: dict[str, ast.expr]) -> list[ast.expr]:

@@ -62,7 +62,8 @@ def unread_terms(
                 continue
             moving = any(map(_is_acceleration, factors))
             axis = any(one is other for one in factors for other in beside)
-            if gap is not None or moving or axis:
+            lost = gap is None and any(one in scope.unused for one in names(term))
+            if gap is not None or moving or axis or lost:
                 more = _BESIDE * (len(factors) - 1)
                 sure = axis or (gap is not None and moving)
                 found.append(((_FITTING if sure else _MOVING) + more, term))

@@ -443,17 +443,22 @@ class LineSearch:
         return found
 
     def _where_it_is_set(self, first: ProgramRepair, found: list[ProgramRepair]) -> ProgramRepair:
-        """Of a sign in front of a name the one where the name is set, if it is right so."""
+        """Of a sign in front of a name the one where the name is set, if it is right so.
+
+        And of a term that a name lacks where it is used.
+        """
         edit = first.edits[-1]
-        name = getattr(getattr(edit.node, "right", None), "id", None)
-        if edit.kind != "sign" or edit.part == DATA or name is None:
+        added = edit.kind == "missing term"
+        used = edit.node if added else getattr(edit.node, "right", None)
+        name = getattr(used, "id", None)
+        if edit.kind not in ("sign", "missing term") or edit.part == DATA or name is None:
             return first
-        right = self.left_right(first.edits[-1:])
+        right = self.left_right(first.edits[-1:]) - added
         lines = (x for x in nodes(self.trial.trees[edit.part]) if isinstance(x, ast.Assign))
         values = {id(x.value) for x in lines if getattr(x.targets[0], "id", "") == name}
         for other in found:
             one = other.edits[-1]
-            near = one.kind == "sign" and self.likely(one) <= self.likely(edit) + _SET
+            near = one.kind == edit.kind and self.likely(one) <= self.likely(edit) + _SET
             if near and id(one.node) in values and self.left_right(other.edits[-1:]) > right:
                 return other
         return first

@@ -71,6 +71,19 @@ class Turned(ast.NodeTransformer):
         return ast.Name(other, node.ctx) if both else node
 
 
+def block_of(above: Sequence[ast.AST]) -> tuple[list[ast.stmt], int]:
+    """The block in which a statement stands, and where in it; none of a place outside of any."""
+    line = statement_of(above)
+    for one in reversed(above):
+        for name in ("body", "orelse"):
+            found = getattr(one, name, None)
+            block: list[ast.stmt] = found if isinstance(found, list) else []
+            for k, other in enumerate(block):
+                if other is line:
+                    return block, k
+    return [], 0
+
+
 def statement_of(above: Sequence[ast.AST]) -> ast.stmt:
     """The innermost statement."""
     return next(one for one in reversed(above) if isinstance(one, ast.stmt))

@@ -6,7 +6,7 @@ import ast
 from collections.abc import Iterator
 
 from kinlab.doctor.bytecode.syntax import factors
-from kinlab.doctor.program.edits.scope.forms import Turned, statement_of
+from kinlab.doctor.program.edits.scope.forms import Turned, block_of, statement_of
 from kinlab.doctor.program.edits.scope.functions import PI
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.constants import OF_RODS
@@ -90,7 +90,9 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
 def _entries_beside(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """An entry of what stands in the same line, for a name: ``crank["c"][i]`` for l1."""
     read = scope.names_in(statement_of(here.above))
-    near = {name for line in _lines_beside(here) for name in scope.names_in(line)} - {*read}
+    block, at = block_of(here.above)
+    lines = [*block[max(at - 1, 0) : at], *block[at + 1 : at + 2]]
+    near = {name for line in lines for name in scope.names_in(line)} - {*read}
     for _text, entry in scope.simple(()):
         if isinstance(entry, ast.Subscript) and root(entry) in read:
             yield here.instead(entry, "name", _ENTRY)
@@ -98,17 +100,6 @@ def _entries_beside(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
             yield here.instead(entry, "name", _ENTRY_NEAR)
     for entry in scope.summed_from.get(here.node.id, ()):
         yield here.instead(entry, "name", _ADDEND)
-
-
-def _lines_beside(here: Here) -> list[ast.stmt]:
-    """The statements before and behind the one in which it stands."""
-    line = statement_of(here.above)
-    for above in here.above:
-        block = getattr(above, "body", None)
-        if isinstance(block, list) and any(one is line for one in block):
-            k = next(k for k, one in enumerate(block) if one is line)
-            return [*block[max(k - 1, 0) : k], *block[k + 1 : k + 2]]
-    return []
 
 
 def _is_a_centre_of_another(here: Here, scope: Scope, name: str) -> bool:
