@@ -257,3 +257,105 @@ def test_a_sign_that_does_what_the_other_order_does_is_not_told_alone(tmp_path) 
     (tmp_path / "hand.py").write_text(wrong)
     found = kl.diagnose("puma560_modified", "jacobian_tool", written(wrong, tmp_path / "hand.py"))
     assert "np.cross(w, P)" in found.causes[0].sentence
+
+
+SOLVED = """
+import numpy as np
+L, d = 0.09, 0.118
+
+def f(p, v, mode):
+    r = p - np.array([[d/2, 0.0], [-d/2, 0.0]])
+    far = np.hypot(r[:, 0], r[:, 1])
+    t = np.arctan2(r[:, 1], r[:, 0]) - mode*np.arccos(far/(2*L))
+    crank = L*np.column_stack((np.cos(t), np.sin(t)))
+    A = r - crank
+    B = np.diag(crank[:, 0]*A[:, 1] - crank[:, 1]*A[:, 0])
+    return np.linalg.solve(B, A @ v)
+"""
+TURNED = """
+import numpy as np
+A, D = [0, 0.4318, 0.0203, 0, 0, 0], [0, 0, 0.15005, 0.4318, 0, 0]
+AL = [np.pi/2, 0, -np.pi/2, np.pi/2, -np.pi/2, 0]
+M = [0, 17.4, 4.8, 0.82, 0.34, 0.09]
+C = [[0, 0, 0], [-0.3638, 0.006, 0.2275], [-0.0203, -0.0141, 0.07], [0, 0.019, 0], [0, 0, 0], [0, 0, 0.032]]
+I = [[0, 0, 0], [0.13, 0.524, 0.539], [0.0685, 0.0835, 0.015], [0.0018, 0.0013, 0.0018],
+     [0.0003, 0.0004, 0.0003], [0.00015, 0.00015, 0.00004]]
+
+def f(q):
+    R, o = [np.eye(3)], [np.zeros(3)]
+    for k in range(6):
+        c, s, ca, sa = np.cos(q[k]), np.sin(q[k]), np.cos(AL[k]), np.sin(AL[k])
+        o.append(o[k] + R[k] @ [A[k]*c, A[k]*s, D[k]])
+        R.append(R[k] @ [[c, -s*ca, s*sa], [s, c*ca, -c*sa], [0, sa, ca]])
+    H = np.diag([1.134029969, 2.324814845, 0.576873332, 0.190790626, 0.170706292, 0.194064506])
+    for k in range(6):
+        at = o[k+1] + R[k+1] @ C[k]
+        V, W = np.zeros((3, 6)), np.zeros((3, 6))
+        for j in range(k + 1):
+            W[:, j] = R[j][:, 2]
+            V[:, j] = np.cross(R[j][:, 2], at - o[j])
+        own = R[k+1] @ np.diag(I[k]) @ R[k+1].T
+        H = H + M[k]*V.T @ V + W.T @ own @ W
+    return H
+"""
+KINDS = """
+import numpy as np
+h = np.pi/2
+ARM = [("R", -h, 0, 0.412, 0, 9.29, [0, 0.0175, -0.1105], [0.276, 0.255, 0.071], 0.953),
+       ("R", h, 0, 0.154, 0, 5.01, [0, -0.1054, 0], [0.108, 0.018, 0.1], 2.193),
+       ("P", 0, 0.0203, 0, -h, 4.25, [0, 0, -0.6447], [2.51, 2.51, 0.006], 0.782),
+       ("R", -h, 0, 0, 0, 1.08, [0, 0.0092, -0.0054], [0.002, 0.001, 0.001], 0.106),
+       ("R", h, 0, 0, 0, 0.63, [0, 0, 0.0566], [0.003, 0.003, 0.0004], 0.097),
+       ("R", 0, 0, 0.263, 0, 0.51, [0, 0, 0.1554], [0.013, 0.013, 0.0003], 0.02)]
+
+def f(q, v):
+    R, w, u, T = np.eye(3), np.zeros(3), np.zeros(3), 0.0
+    for (kind, al, a, d, th, m, c, I, J), x, rate in zip(ARM, q, v):
+        z = R[:, 2]
+        t, d = (th + x, d) if kind == "R" else (th, d + x)
+        ct, st, ca, sa = np.cos(t), np.sin(t), np.cos(al), np.sin(al)
+        step = R @ [a*ct, a*st, d]
+        if kind == "R":
+            w = w + rate*z
+        u = u + np.cross(w, step) + (rate*z if kind == "P" else 0)
+        R = R @ np.array([[ct, -st*ca, st*sa], [st, ct*ca, -ct*sa], [0, sa, ca]])
+        g, own = u + np.cross(w, R @ c), R.T @ w
+        T += 0.5*m*g @ g + 0.5*own @ (np.array(I)*own) + 0.5*J*rate**2
+    return T
+"""
+
+
+@pytest.mark.parametrize(
+    ("robot", "quantity", "text", "right", "slip"),
+    [
+        ("equal_links", "fivebar_rates", SOLVED, "solve(B, A @ v)", "solve(A, B @ v)"),
+        ("puma560", "mass_matrix", TURNED, "own = R[k+1] @ np.diag(I[k]) @ R[k+1].T", "own = R[k] @ np.diag(I[k]) @ R[k].T"),
+        ("stanford", "kinetic_energy", KINDS, ' + (rate*z if kind == "P" else 0)', "\n        R = R"),
+    ],
+    ids=["exchanged", "throughout", "kind"],
+)  # fmt: skip
+def test_what_goes_together_is_told_together(robot, quantity, text, right, slip, tmp_path) -> None:
+    if slip.startswith("\n"):
+        right, slip = right + "\n        R = R", slip
+    told_in_its_line(robot, quantity, text, right, slip, tmp_path / "hand.py")
+
+
+LIFTED = """
+import numpy as np
+
+def f(q):
+    a1, a2, high = 0.325, 0.275, 0.387
+    t = q[0] + q[1] - q[3]
+    x, y = a1*np.cos(q[0]) + a2*np.cos(q[0] + q[1]), a1*np.sin(q[0]) + a2*np.sin(q[0] + q[1])
+    z = high - q[2]
+    return np.array([[np.cos(t), np.sin(t), 0, x], [np.sin(t), -np.cos(t), 0, y], [0, 0, -1, z],
+                     [0, 0, 0, 1]])
+"""
+
+
+def test_a_term_is_missing_where_the_name_is_set(tmp_path) -> None:
+    wrong = with_slips(LIFTED, [("z = high - q[2]", "z = -q[2]")])
+    (tmp_path / "hand.py").write_text(wrong)
+    found = kl.diagnose("scara", "fk", written(wrong, tmp_path / "hand.py"))
+    first = found.causes[0].sentence.partition("; or else")[0]
+    assert "`z = -q[2]`" in first

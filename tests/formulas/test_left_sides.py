@@ -176,3 +176,11 @@ def test_a_moment_is_no_word(text) -> None:
 )
 def test_a_list_of_one_number_is_that_number(entry, text) -> None:
     assert kl.diagnose("single_link", entry, text).agrees
+
+
+@pytest.mark.parametrize(
+    "behind", [" J", " J, as derived in class.", " J. This follows from Steiner."]
+)
+def test_a_unit_behind_dollars_is_no_factor(behind) -> None:
+    text = r"$T = \frac16 ml^2\dot\theta^2 = 0.15\,\dot\theta^2$"
+    assert kl.diagnose("single_link", "kinetic_energy", text + behind).agrees

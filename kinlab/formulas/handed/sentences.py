@@ -60,6 +60,10 @@ _LABEL = re.compile(
 )
 _SUBJECT = re.compile(r"(?<==)([^=,;]+)[,;]\s*I_?\{?[a-z]{0,2}\d\}?\s*$")
 """Whose moment of inertia a sentence behind a formula is about: ``..., I2 taken at the pivot``."""
+_BEHIND_DOLLARS = re.compile(
+    r"(?<=\$)\s{0,3}(?:N\s?m|N·m|J|N|kg\s?m(?:\^2|²)?|m|rad|(?:m|rad)/s(?:\^2|²)?)\s{0,3}$"
+)
+"""A unit behind a formula's dollars, which is no factor of it."""
 _OF_A_WRENCH = re.compile(r"[FfMmNn][xyz]")
 """Names of forces and moments, of which one is a word, too: ``My``."""
 _SHORT = 4
@@ -120,7 +124,7 @@ def without_sentences(text: str, entry: str) -> str:
     pieces = [piece for part in parts for piece in _apart(part)]
     pieces = [piece for piece in pieces if piece]
     dollars = any(mark in piece for piece in pieces for mark in ("$", r"\[", r"\("))
-    pieces = [_bare(piece) for piece in pieces]
+    pieces = [_bare(_BEHIND_DOLLARS.sub("", piece)) for piece in pieces]
     kept = _of_entry([piece for piece in pieces if piece], entry)
     if not kept:
         return text
