@@ -830,7 +830,7 @@ def readings(text: str, entry: str) -> list[str]:
     formulas = [part for part in parts if part not in names] or parts[-1:]
     left = next((name for name in names if begins_with(f"{name} =", entry)), "")
     strange = any(name != left and not _also(name, entry) for name in names)
-    several = any(len(parts_at(formula, ",")) > 1 for formula in formulas)
+    several = any(len(parts_at(formula, ",;")) > 1 for formula in formulas)
     alone = len(parts) == 2 and (names or not _is_formula(parts[0]))
     if alone or strange or several:
         return [text]

@@ -184,3 +184,10 @@ def test_a_list_of_one_number_is_that_number(entry, text) -> None:
 def test_a_unit_behind_dollars_is_no_factor(behind) -> None:
     text = r"$T = \frac16 ml^2\dot\theta^2 = 0.15\,\dot\theta^2$"
     assert kl.diagnose("single_link", "kinetic_energy", text + behind).agrees
+
+
+@pytest.mark.parametrize("front", ["", "(a) Hence ", "b) So ", "Therefore "])
+def test_a_letter_in_front_of_hence_is_no_line(front) -> None:
+    """What follows was read as one chain, of which the last definition was told as wrong."""
+    text = "L = T - V;  T = m*l^2*qd^2/6;  V = m*g*l/2*sin(q)"
+    assert kl.diagnose("single_link", "lagrangian", front + text).agrees

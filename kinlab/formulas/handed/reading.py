@@ -144,7 +144,7 @@ _FOLLOWS = re.compile(
 _AT = r"(?!\$?\\?(?:q|theta|vartheta|θ|th)_?\{?[\d₀-₉]?\}?\s{0,9}=\s{0,9}[-+±]?\s?[\dπ\\])"
 """No state: ``so q2 = 0 is singular``."""
 _HENCE = re.compile(
-    r"(?<=\S)\s{0,9}[.,;]?\s{1,9}(?:hence|so|thus|therefore|then|(?:it\s+follows|we\s+find)\s+that"
+    r"(?<=\S)(?<!\([a-z]\))(?<!^\w\))\s{0,9}[.,;]?\s{1,9}(?:hence|so|thus|therefore|then|(?:it\s+follows|we\s+find)\s+that"
     r"|we\s+get|donc|alors|also|daher|somit|folglich|damit|quindi|dunque|luego|entonces|por\s+tanto)"
     rf"\s{{0,9}}[,:]?\s{{1,9}}{_AT}(?={_NAMED})"
     rf"|(?<=\S)[,，。;；]?\s{{0,9}}(?:因此|所以|于是|したがって|従って|ゆえに|よって)[,，]?\s{{0,9}}{_AT}(?={_NAMED})",
