@@ -8,6 +8,7 @@ import kinlab as kl
 from kinlab.errors import ExpressionError
 
 RATE, LEVER = r"l_1 c_2\dot\theta_1", r"l_1\cos q_1 + l_{c2}\cos(q_1+q_2)"
+PULL = r"(l_1 s_2\ddot\theta_1 - l_1 c_2\dot\theta_1^2)"
 M12 = r"m_2(l_{c2}^2 + l_1 l_{c2}\cos q_2) + I_2"
 
 
@@ -18,6 +19,8 @@ M12 = r"m_2(l_{c2}^2 + l_1 l_{c2}\cos q_2) + I_2"
         ("link_velocities[1,1]", "v_{2,y}", RATE),
         ("link_velocities[1,1]", "(v_2)_y", RATE),
         ("com_jacobians[1,1,0]", "[J_{v_{c2}}]_{21}", LEVER),
+        ("link_accelerations[1,0]", r"{}^2\dot v_{2x}", PULL),
+        ("link_accelerations[1,0]", r"{}^2\dot{v}_{2x}", PULL),
     ],
 )
 def test_a_name_that_no_list_has_is_told_as_not_read(entry, name, right) -> None:

@@ -277,9 +277,10 @@ def _as_asked(text: str, entry: str) -> str:
 
 
 _BELOW = r"(?:\w|\{[^={}]{0,20}(?:\{[^={}]{0,9}\}[^={}]{0,9}){0,2}\})"
+_RATED = r"(?:\\d{0,2}dot\s*(?:\{\s*[vaw]\s*\}|[vaw])|[vawV])(?![A-Za-z])"
 _LABEL = re.compile(
     r"^(?P<begin>\s*\$*\s*)(?P<label>"
-    rf"(?:\{{\s*\}}\s*\^\s*{_BELOW}\s*)(?:_\s*{_BELOW}\s*)?[vawV](?![A-Za-z])(?:_\s*{_BELOW})?"
+    rf"(?:\{{\s*\}}\s*\^\s*{_BELOW}\s*)(?:_\s*{_BELOW}\s*)?{_RATED}(?:_\s*{_BELOW})?"
     rf"|[vaw]\s*_\s*\{{\s*\w{{1,2}}\s*,\s*[xyz]\s*\}}"
     rf"|[\[(]\s*\\?[A-Za-z]{{1,6}}(?:\s*[_^]\s*{_BELOW}){{1,3}}\s*[\])]\s*_\s*{_BELOW}"
     r")(?P<equals>\s*&?\s*=(?!=))(?=[^=]*$)"
