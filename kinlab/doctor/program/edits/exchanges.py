@@ -18,6 +18,8 @@ from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, follow, numb
 
 _ANGLES = 1.13
 """Cost of the joint before in every angle of a statement."""
+_ON = 1.15
+"""Cost of the entry before, or behind, for all those of a counter; a row moved on is cheaper."""
 _OF_ROWS = 1.15
 """Cost of one row for another wherever a statement reads it."""
 _PAIR = 2
@@ -90,7 +92,8 @@ def of_statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
             for entry in _entries_beside(uses[text][0]):
                 if ast.unparse(entry) not in uses:
                     new = Renamed({text: entry}).of(value)
-                    yield here.within(here.node, "value", new, "index", 1.1)
+                    counted = isinstance(getattr(uses[text][0], "slice", None), ast.Name)
+                    yield here.within(here.node, "value", new, "index", _ON if counted else 1.1)
             if all(id(node) in angles for node in uses[text]) and _is_given(here, uses[text][0]):
                 for _other, node in scope.simple(()):
                     if follow(node, uses[text][0]):

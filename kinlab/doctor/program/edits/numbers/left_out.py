@@ -9,8 +9,8 @@ from dataclasses import replace
 import numpy as np
 
 from kinlab.doctor.bytecode.syntax import copied, nodes
+from kinlab.doctor.program.edits.chains import SUMS, chain
 from kinlab.doctor.program.edits.numbers.as_the_arm import typed
-from kinlab.doctor.program.edits.scope.forms import summands
 from kinlab.doctor.program.places import Here, ProgramEdit
 from kinlab.model.dh import DHTable
 from kinlab.tolerances import TOLERANCES
@@ -46,7 +46,8 @@ def rotors_left_out(here: Here, table: DHTable) -> Iterator[ProgramEdit]:
         return  # of the whole sum
     rotors = [float(link.armature) for link in table.links]
     told: dict[int, ast.expr] = {}
-    for term in summands(here.node):
+    first, others = chain(here.node, SUMS)
+    for term in (first, *(one for _sign, one in others)):
         sizes = [x for x in nodes(term) if isinstance(getattr(x, "value", None), float)]
         places_ = {k for x in nodes(term) if (k := _joint_of(x)) is not None}
         if len(sizes) == 1 and len(places_) == 1:
