@@ -194,3 +194,10 @@ def test_a_letter_in_front_of_hence_is_no_line(front) -> None:
     """What follows was read as one chain, of which the last definition was told as wrong."""
     text = "L = T - V;  T = m*l^2*qd^2/6;  V = m*g*l/2*sin(q)"
     assert kl.diagnose("single_link", "lagrangian", front + text).agrees
+
+
+@pytest.mark.parametrize("rate", ["q̇₂", "qd2", "q̇2"])
+def test_a_factor_behind_a_bracket_begins_no_clause(rate) -> None:
+    """``sin(q2) qd2 in SI units``: the rate was left out with the words, and a right one wrong."""
+    text = f"Mdot12 = -m2 l1 lc2 sin(q2) {rate} in SI units."
+    assert kl.diagnose("planar2r_rods", "mass_matrix_dot[0,1]", text).agrees

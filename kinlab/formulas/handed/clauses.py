@@ -263,11 +263,17 @@ def _segmented(run: str) -> list[str]:
     return pieces
 
 
+_FACTOR = re.compile(r"[^\W\d_]|[^\W\d_]+\d+")
+"""What stands behind a bracket as a factor: g, qd2, l1."""
+
+
 def _subject(tokens: list[_Token], begin: int) -> str | None:
     """The name of a definition behind which a clause begins; "" of no such; None where none may."""
     if begin == 0:
         return ""
     before = tokens[begin - 1]
+    if before.text in (")", "）") and _FACTOR.fullmatch(tokens[begin].text):
+        return None  # sin(q2) qd2 in SI units
     if before.kind == "mark" or _is_opener(before) or _is_joint(before):
         return ""
     start = begin
