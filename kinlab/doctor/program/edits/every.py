@@ -147,7 +147,7 @@ def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[Pro
 
 
 def _set_here(here: Here) -> list[str]:
-    """The name to which the statement gives a name as it is: ``o = o`` would do nothing."""
+    """The names to which the statement gives an expression as it is: ``o`` of ``o = p``."""
     line = statement_of(here.above)
     if not isinstance(line, ast.Assign):
         return []
@@ -157,14 +157,9 @@ def _set_here(here: Here) -> list[str]:
 
 def _is_as_called(here: Here) -> bool:
     """Whether a name that is called so is set to a sine, or a cosine: ``c2 = cos(q2)``."""
-    line = statement_of(here.above)
-    if not isinstance(here.node, ast.Call) or not isinstance(line, ast.Assign):
-        return False
-    pairs = (pair for target in line.targets for pair in paired(target, line.value))
-    own = [one.id for one, what in pairs if what is here.node and isinstance(one, ast.Name)]
-    function = called(here.node)
+    function = called(here.node) if isinstance(here.node, ast.Call) else ""
     return function in ("sin", "cos") and any(
-        one[0].lower() == function[0] and _WAVE.fullmatch(one) for one in own
+        one[0].lower() == function[0] and _WAVE.fullmatch(one) for one in _set_here(here)
     )
 
 

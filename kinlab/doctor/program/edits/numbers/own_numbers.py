@@ -110,7 +110,7 @@ def of_own_numbers(
                 yield from _with_another(here, kinds)
                 yield from _instead_of_zero(here, trial, left_out)
     to_centres = _to_centres(table, given)
-    copies = {one for tree in trial.trees for one in _copies(tree)}
+    copies = {one for tree in trial.trees for one in _copies(tree)} if to_centres else set()
     for part, tree in enumerate(trial.trees) if to_centres else ():
         for here in places(part, tree):
             dear = isinstance(here.node, ast.Name) and here.node.id in copies
@@ -119,7 +119,9 @@ def of_own_numbers(
     ends = (np.ravel(np.asarray(end)[:3, 3]) for end in (table.tool, table.base))
     arm = {abs(float(x)) for x in (*(x for k in table.links for x in (k.a, k.d)), *chain(*ends))}
     unnamed = [x for x in sorted(arm) if x and not among(x, given)]
-    for part, tree in enumerate(trial.trees):
+    offset = np.asarray(table.tool, dtype=float)[:3, 3].any()
+    has_more = offset or any(link.armature for link in table.links)
+    for part, tree in enumerate(trial.trees) if has_more else ():
         for here in places(part, tree):
             yield from at_the_tool(here, table, given)
             yield from rotors_left_out(here, table)
