@@ -825,7 +825,7 @@ def readings(text: str, entry: str) -> list[str]:
         return [f"{dollars}{part}{dollars}" for part in reversed(parts)]
     if not 2 <= len(parts) <= _LONGEST_CHAIN or any(part[-1:] in ("", *"<>!") for part in parts):
         return [text]
-    named = [is_name(part) and not (k and _is_times(part, entry)) for k, part in enumerate(parts)]
+    named = [is_name(one) and not (k and _is_formula_of(one, entry)) for k, one in enumerate(parts)]
     names = [part for part, is_one in zip(parts, named, strict=True) if is_one]
     formulas = [part for part in parts if part not in names] or parts[-1:]
     left = next((name for name in names if begins_with(f"{name} =", entry)), "")
@@ -852,13 +852,17 @@ def is_name(text: str) -> bool:
     return False
 
 
-def _is_times(text: str, entry: str) -> bool:
-    r"""Whether a name with rates in parentheses is their product: ``h(\dot q_1 \dot q_2)``."""
-    if "(" not in text:
-        return False
+def _is_formula_of(text: str, entry: str) -> bool:
+    r"""Whether a name behind a sign of equality is no name of the entry's, but what it comes to.
+
+    ``m_2`` and ``m_2(q_2)`` are a mass and its product where M12 is asked for; with rates in
+    parentheses it is a product: ``h(\dot q_1 \dot q_2)``.
+    """
     (head, places), (mine, asked) = map(_head_and_places, map(entry_name, (text, entry)))
-    alike = bool(places) == bool(asked) and any({head, mine} <= group for group in _MEANT)
-    return head != mine and not alike
+    meant = head == mine or any({head, mine} <= group for group in _MEANT)
+    if places and asked and len(places) != len(asked) and (meant or "(" in text):
+        return True
+    return "(" in text and head != mine and not (meant and bool(places) == bool(asked))
 
 
 def is_name_of(name: str, entry: str) -> bool:

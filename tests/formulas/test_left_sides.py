@@ -104,6 +104,23 @@ def test_a_step_that_is_a_product_in_parentheses_is_judged(which) -> None:
     assert "c_{23}" in found.causes[0].sentence
 
 
+@pytest.mark.parametrize("last", ["m_2", "m_2(l_2)", "m_2(q_2)"])
+def test_a_mass_is_no_name_of_the_entry(last) -> None:
+    """A wrong last step is judged or refused, and not passed over."""
+    text = f"M_{{12}} = {M12}"
+    assert kl.diagnose("planar2r_rods", "mass_matrix[0,1]", f"${text}$").agrees
+    try:
+        found = kl.diagnose("planar2r_rods", "mass_matrix[0,1]", f"${text} = {last}$")
+    except ExpressionError:
+        return
+    assert not found.agrees
+
+
+def test_the_name_of_the_mirrored_entry_is_one() -> None:
+    text = f"$M_{{12}} = M_{{21}} = {M12}$"
+    assert kl.diagnose("planar2r_rods", "mass_matrix[0,1]", text).agrees
+
+
 def test_rates_in_parentheses_are_a_product() -> None:
     text = r"$C_{12} = -m_2 l_1 l_{c2}s_2(\dot q_1 + \dot q_2) = h(\dot q_1 \dot q_2), h = -m_2 l_1 l_{c2}s_2$"
     assert not kl.diagnose("planar2r_rods", "coriolis_matrix[0,1]", text).agrees
