@@ -830,6 +830,7 @@ def readings(text: str, entry: str) -> list[str]:
     formulas = [part for part in parts if part not in names] or parts[-1:]
     left = next((name for name in names if begins_with(f"{name} =", entry)), "")
     strange = any(name != left and not _also(name, entry) for name in names)
+    strange |= len(parts) > 2 and named[-1] and not _may_end(parts[-1], entry)
     several = any(len(parts_at(formula, ",;")) > 1 for formula in formulas)
     alone = len(parts) == 2 and (names or not _is_formula(parts[0]))
     if alone or strange or several:
@@ -863,6 +864,23 @@ def _is_formula_of(text: str, entry: str) -> bool:
     if places and asked and len(places) != len(asked) and (meant or "(" in text):
         return True
     return "(" in text and head != mine and not (meant and bool(places) == bool(asked))
+
+
+def _may_end(name: str, entry: str) -> bool:
+    r"""Whether a chain of equalities may end in a name: M21 of M12, ``g_2(q)``.
+
+    ``g_2 = ... = g_1`` says something of g1, and ``= I_2`` of a number of the arm's.
+    """
+    of_state = re.sub(r"[^(]*", "", name, count=1)
+    if of_state and not re.search(r"[qθΘϑ]|[tT]h(?:eta)?", of_state):
+        return False
+    plain = entry_name(name)
+    (head, places), (mine, _wanted) = map(_head_and_places, (plain, entry_name(entry)))
+    across = [plain, f"{head}{places[::-1]}"] if head in _SYMMETRIC else [plain]
+    known = head == mine or any({head, mine} <= group for group in _MEANT)
+    others = known and any(of_one_name(one, entry) for one in across)
+    point = plain.replace("_", "") in _POINT and plain[-1] == entry
+    return begins_with(f"{name} =", entry) or others or point
 
 
 def is_name_of(name: str, entry: str) -> bool:
@@ -1086,6 +1104,7 @@ _IN_BOOKS = (
 )
 """What books call the same thing: Spong's d11 and phi1, Craig's V, Siciliano's B."""
 _MEANT = tuple({word.lower() for word in group.split()} for group in _IN_BOOKS)
+_SYMMETRIC = _MEANT[0]
 _POSES = {"t", "a", "h", "fk"}
 _ROTATION = re.compile(r"[123]{2}")
 """The places of a rotation, alone or in a transform: r11 is T11."""

@@ -218,3 +218,35 @@ def test_a_factor_behind_a_bracket_begins_no_clause(rate) -> None:
     """``sin(q2) qd2 in SI units``: the rate was left out with the words, and a right one wrong."""
     text = f"Mdot12 = -m2 l1 lc2 sin(q2) {rate} in SI units."
     assert kl.diagnose("planar2r_rods", "mass_matrix_dot[0,1]", text).agrees
+
+
+SECOND = "m2*g*l2/2*cos(q1+q2)"
+OFF_DIAGONAL = "I2 + m2*l2^2/4 + m2*l1*l2/2*cos(q2)"
+
+
+@pytest.mark.parametrize(
+    ("entry", "text", "ends"),
+    [
+        ("g2", f"g_2 = {SECOND}", ["g_1", "g", "G", "g_1(q)", "G_2(a_2)", "x", "h", "I_2"]),
+        ("M12", f"M_{{12}} = {OFF_DIAGONAL}", ["M_{11}", "H_{22}", "M", "I_2", "a", "x"]),
+    ],
+)
+def test_a_chain_does_not_end_in_the_name_of_something_else(entry, text, ends) -> None:
+    """The name was left out without a word, and the formula before it agreed."""
+    for end in ends:
+        with pytest.raises(ExpressionError, match="signs of equality"):
+            kl.diagnose("planar2r_rods", entry, f"{text} = {end}")
+
+
+@pytest.mark.parametrize(
+    ("entry", "text", "ends"),
+    [
+        ("g2", f"g_2 = {SECOND}", ["g_2", "G_2", "g_2(q)", r"\phi_2"]),
+        ("M12", f"M_{{12}} = {OFF_DIAGONAL}", ["M_{21}", "H_{21}", "d_{12}", r"M_{12}(\theta_2)"]),
+        ("x", "x = l1*cos(q1) + l2*cos(q1+q2)", ["p_x", "x(q)"]),
+    ],
+)
+def test_a_chain_may_end_in_another_name_of_the_same(entry, text, ends) -> None:
+    for end in ends:
+        assert kl.diagnose("planar2r_rods", entry, f"{text} = {end}").agrees
+        assert not kl.diagnose("planar2r_rods", entry, f"{text} + l1 = {end}").agrees
