@@ -21,7 +21,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import partial
@@ -31,10 +32,12 @@ from kinlab.errors import ExpressionError, FileError
 from kinlab.formulas import grids, tree, typed
 from kinlab.formulas.handed.clauses import Claim, Holds
 from kinlab.formulas.handed.columns import with_matrices
+from kinlab.formulas.handed.derivations import conclusion
 from kinlab.formulas.handed.equations import solved
-from kinlab.formulas.handed.prose import Doubt, left_over
+from kinlab.formulas.handed.prose import Doubt, doubtful, left_over
 from kinlab.formulas.handed.rates import MOVING
 from kinlab.formulas.handed.reading import as_formula
+from kinlab.formulas.handed.words import refuse_meanings
 from kinlab.formulas.signs.latex import LAMBDA
 from kinlab.formulas.signs.letters import WIDE
 from kinlab.formulas.signs.named import (
@@ -50,6 +53,8 @@ from kinlab.formulas.tree import Node
 from kinlab.host.language import N_, _
 
 _FORMULAS = 200
+_SHOWN = 60
+"""Signs of a formula in a remark."""
 PartsOf = Callable[[str], grids.Grid | None]
 """The entries of a name that is of several, row by row; None of a name that is of one or of all."""
 
@@ -122,6 +127,45 @@ def formula_file(
         FileError: the document holds no formulas, or what is none.
         ExpressionError: an expression that is no arithmetic, with the entry's name.
     """
+    read = partial(_formula_file, document, place, writing, holds, parts_of, last)
+    try:
+        return read({})
+    except ExpressionError:
+        ends = {key: _conclusion(key, value) for key, value in _every_text(document)}
+        ends = {key: end for key, end in ends.items() if end}
+        if not ends:
+            raise
+        with suppress(ExpressionError):
+            return read(ends)
+        raise
+
+
+def _every_text(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Each entry's text."""
+    for name in entries_of(document):
+        for table in (document, *(document.get(key, {}) for key in _TABLES)):
+            if isinstance(table, dict) and isinstance(value := table.get(name), str):
+                yield name, value[:LENGTH]
+
+
+def _conclusion(entry: str, text: str) -> str:
+    """What a derivation comes to; empty where it is none, or words in it mean something else."""
+    with suppress(ExpressionError):
+        refuse_meanings(text, entry, "")
+        return conclusion(text, entry)
+    return ""
+
+
+def _formula_file(
+    document: Mapping[str, Any],
+    place: str,
+    writing: typed.Hand | None,
+    holds: Holds | None,
+    parts_of: PartsOf | None,
+    last: LastJoint | None,
+    ends: Mapping[str, str],
+) -> FormulaFile:
+    """As :func:`formula_file`; of some derivations only what they come to."""
     document = dict(document)
     robot = document.pop("robot", None)
     if not isinstance(robot, str) or not robot:
@@ -159,8 +203,13 @@ def formula_file(
     for key, value in list(entries.items()):
         at = f"{place}: {key}"
         text = _text(value, at)
-        plain = text if last is None else without_its_axes(text, key, last)
+        plain = ends.get(key, text)
+        plain = plain if last is None else without_its_axes(plain, key, last)
         entries[key], remarks[key], told = as_formula(plain, key, at, holds, key in whole)
+        if key in ends:
+            told = doubtful(text, key)
+            said = _("of the derivation {formula!r} is judged, and no other step")
+            remarks[key] = said.format(formula=plain.strip("$")[:_SHOWN])
         doubts[key] = text, told
         entries[key] = typed.as_column(entries[key], key)
         parts = {} if key in whole else typed.several(entries[key], key)

@@ -136,7 +136,7 @@ def _opened(found: re.Match[str], text: str) -> str:
     """Words in a font of their own as words; what stands in a brace, or is a unit, as it is."""
     front = text[: found.start()]
     inside = front.count("{") != front.count("}")
-    words = any(_is_word(one[0], found[1], one) for one in _WORD.finditer(found[1]))
+    words = any(is_word(one[0], found[1], one) for one in _WORD.finditer(found[1]))
     return f" {found[1]} " if words and not inside else found[0]
 
 
@@ -148,7 +148,7 @@ def _marked(text: str) -> str:
     for found in _WORD.finditer(text):
         if any(start <= found.start() < end for start, end in maths):
             continue
-        if _is_word(found[0], text, found):
+        if is_word(found[0], text, found):
             out += [text[last : found.start()], _GAP]
             last = found.end()
     text = "".join([*out, text[last:]])
@@ -159,8 +159,14 @@ def _marked(text: str) -> str:
     return _BRACKETS.sub(_GAP, text)
 
 
-def _is_word(word: str, text: str, found: re.Match[str]) -> bool:
-    """Whether letters are a word of a sentence, and no name in a formula."""
+def is_word(word: str, text: str, found: re.Match[str]) -> bool:
+    """Whether letters are a word of a sentence, and no name in a formula.
+
+    Args:
+        word: the letters.
+        text: what they stand in.
+        found: where.
+    """
     if "\u4e00" <= word[0] <= "\u9fff":
         return word not in ("常数", "常量")
     if "\u0400" <= word[0] <= "\u04ff":

@@ -183,7 +183,7 @@ def without_words(text: str, entry: str, place: str) -> str:
     Raises:
         ExpressionError: words that may change what a name means.
     """
-    _refuse_meanings(text, entry, place)
+    refuse_meanings(text, entry, place)
     spoken = None if "=" in text else _SPOKEN.match(text)
     if spoken and any(not is_program(one) for one in _LONG_WORD.findall(spoken["words"])):
         text = text[spoken.end() :]
@@ -327,8 +327,13 @@ def _of_another_quantity(text: str, entry: str) -> str:
 _NAME_BEHIND = re.compile(r"[$\\]{0,3}[A-Za-z][\w{},]{0,12}(?:\([\w,\s]{1,12}\))?\s*&?$")
 
 
-def _refuse_meanings(text: str, entry: str, place: str) -> None:
+def refuse_meanings(text: str, entry: str, place: str) -> None:
     """Refuses words that change what a formula claims whether it is right or not.
+
+    Args:
+        text: as typed.
+        entry: what the formula is asked for.
+        place: what to put in front of a message.
 
     Raises:
         ExpressionError: with the words.

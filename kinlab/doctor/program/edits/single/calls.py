@@ -17,6 +17,8 @@ from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, number, root
 _AXES = 2
 """Axes of an array of which another may be meant, at least."""
 _ORDERED = ("cross", "dot", "arctan2", "atan2", "outer", "solve", "matmul", "subtract", "array")
+_PRODUCT = 1.05
+"""Cost of a product of matrices the other way about."""
 _DIAGONAL = 1.02
 """Cost of the main diagonal for another."""
 _ARGUMENTS, _APART = 4, 0.03
@@ -159,6 +161,9 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
         force = ast.UnaryOp(ast.USub(), ast.Attribute(node, "T", ast.Load()))
         yield here.instead(force, "transposed", _OF_FORCES)  # crm(v) for -crm(v).T
     plain = [a for a in node.args if not isinstance(a, ast.Starred)]
+    if name == "dot" and len(node.args) == 1 and observed.shape(node.func.value):
+        method = ast.Attribute(node.args[0], name, ast.Load())
+        yield here.instead(ast.Call(method, [node.func.value], []), "order", _PRODUCT)
     if len(plain) == len(node.args):
         for i, j in combinations(range(len(plain)), 2):
             if j > i + 1 and len(plain) > _ARGUMENTS:
@@ -170,7 +175,7 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
             if less and scope.crosses(node) and not isinstance(plain[0], ast.BinOp) and not load:
                 turned = [plain[0], chains.opposite(plain[1])]
                 yield here.within(node, "args", turned, "sign", _LED)
-            cost = 1.02 if scope.crosses(node) else 1.05 if name in _ORDERED else 1.15
+            cost = 1.02 if scope.crosses(node) else _PRODUCT if name in _ORDERED else 1.15
             cost = _BACKWARDS if scope.crosses(node) and _is_backwards(*plain[:2]) else cost
             yield here.within(node, "args", swapped, "order", cost + _APART * (j > i + 1))
         if name in ("arctan2", "atan2") and len(plain) == 2:

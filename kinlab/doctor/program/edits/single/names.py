@@ -34,6 +34,8 @@ _NUMBERED = 1.07
 """Cost of a name for another that differs from it by a number."""
 _ADDEND = 1.06
 """Cost of one of two that a name is the sum of: the joint's rate for the link's."""
+_IDLE = 1.03
+"""Cost of a vector, or a matrix, that is set and used nowhere for another: ``force``."""
 _IN_LINE = 1.12
 """Cost of a name for another that stands in the same line."""
 
@@ -73,6 +75,7 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
                 cost = _HALF
             if other == across and {other, node.id} <= scope.sines:
                 kind, cost = "sin/cos", 1.04
+            cost = min(cost, _IDLE) if shape and other in scope.unused else cost
             yield here.instead(ast.Name(other, ast.Load()), kind, cost)
     if shape == ():
         yield from _entries_beside(here, scope)

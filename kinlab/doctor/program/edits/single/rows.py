@@ -33,6 +33,8 @@ _ONES = 1.14
 """Cost of ones for a row with zeros."""
 _TURNED = 1.05
 """Cost of a turn the other way for one about an axis."""
+_MOMENT = 1.06
+"""Cost of the other sign of half a twist: of the moment of a screw."""
 _LIKE_ANOTHER = 1.06
 """Cost of an entry that is made as another one of its row is."""
 _PRODUCTS = 1.08
@@ -64,6 +66,11 @@ def of_sequence(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
         unpacked = isinstance(here.node, ast.Tuple) and isinstance(here.parent, ast.Assign)
         cost = 1.25 if unpacked else _QUARTER if _is_normal(elements) else 1.1
         yield here.within(here.node, "elts", turned, "sign", cost)
+    for part in (slice(3), slice(3, 6)) if len(elements) == 2 * _THREE else ():
+        half = [*elements]
+        half[part] = turned[part]
+        if sum(one is not old for one, old in zip(half, elements, strict=True)) >= _PAIR:
+            yield here.within(here.node, "elts", half, "sign", _MOMENT)
     slid = _as_of_a_slide(elements)
     if slid:
         yield here.within(here.node, "elts", slid, "kind of joint", _SLIDE)

@@ -1,0 +1,124 @@
+"""What a derivation of several steps comes to: the entry's own equations, and what explains them.
+
+``T = ..., V = ...; d/dt(dT/dqd1) = ...; hence tau1 = ... = ...``: for a text that cannot be read as
+it is. All else in it is left out; which of its words may mean something is told by
+:mod:`kinlab.formulas.handed.prose`, as beside any formula.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from kinlab.formulas.handed.sentences import is_word
+from kinlab.formulas.handed.vocabulary import CHINESE, LATIN
+from kinlab.formulas.typed import begins_with, is_name_of, own_name, says_what_it_is
+
+_GRID = re.compile(r"\\begin\{\w*(?:matrix|array|cases)\*?\}|\bdef\b|\blambda\b|\breturn\b|\[\[")
+"""What stands in lines of its own, and is no step."""
+_LINES = re.compile(
+    r"\\\\(?:\[[\w. ]{0,9}\])?|\\(?:begin|end)\{[a-z]+\*?\}|\\[\[\]()]|\$+|&|\\q?quad(?![A-Za-z])"
+    r"|\\(?:Rightarrow|Longrightarrow|implies|therefore|Leftrightarrow|iff)(?![A-Za-z])"
+    r"|(?<![<>=])=>|[⇒⟹→⟶∴⇔]|\\text\w*\s*\{[^{}]*\}"
+)
+"""Where one step ends and another begins; words in LaTeX."""
+_LETTER = r"(?:\\?[A-Za-z]{1,8}|[α-ωΑ-Ω𝜃𝜏])"
+_INDEX = r"(?:_?\d{1,3}(?:,\d)?|[₀-₉]{1,3}|_?\{[^{}=\n]{1,12}\}|_[A-Za-z]\d?)"
+_NAMED = re.compile(
+    rf"(?<![\w\\}}\])])(?P<name>(?:\\d?dot\s*\{{?\s*)?{_LETTER}[̇̈]?\}}?{_INDEX}?"
+    r"(?:\[[\d,: ]{1,9}\]|\(\s*\d\s*,\s*\d\s*\))?)"
+    r"(?:\((?:[\s,;]|\\?(?:d?dot|theta|boldsymbol|mathbf)(?![a-z])|[qθ]|[{}_\d]|qd{1,2}|th|[̇̈])+\))?"
+    r"\s*:?=(?!=)"
+)
+_OPERATORS = tuple("*/+-^·×=−(")
+_WORD = re.compile(rf"(?<![\\\w])[{LATIN}]{{3,}}$|[{CHINESE}]$")
+_END = re.compile(
+    rf"[;；。，、]|,(?!\d)|\.(?=\s|$)|:(?!=)|[{CHINESE}]|(?<![\\\w])(?P<word>[{LATIN}]{{2,}})(?![\w(])"
+    r"|\n(?!\s*(?:[=+*/·]|[-−]\s|\\cdot))"
+)
+"""What ends a formula, outside of brackets; a word where it is none of a formula."""
+_STEPS = 6
+
+
+@dataclass(frozen=True)
+class _Equation:
+    name: str
+    right: str
+
+
+def conclusion(text: str, entry: str) -> str:
+    """The equations of the entry in a text of several steps, as one chain, and what explains them.
+
+    Args:
+        text: as typed.
+        entry: what it is asked for.
+
+    Returns:
+        Empty where there is no other equation, or none of the entry.
+    """
+    if _GRID.search(text):
+        return ""
+    found = [*_equations(_LINES.sub("\n", text))]
+    own = [one for one in found if _is_of(one, entry)]
+    formulas = [right for one in own if (right := _formula(one.right))]
+    if not formulas or len(found) < 2 or len(formulas) > _STEPS:
+        return ""
+    others = {own_name(one.name): one for one in found if one not in own}
+    chain = " = ".join([own[-1].name, *dict.fromkeys(formulas)])
+    kept = [f"{one.name} = {one.right}" for one in _explaining(chain, others)]
+    told = "; ".join([*kept, chain])
+    return f"${told}$" if "\\" in told else told
+
+
+def _is_of(one: _Equation, entry: str) -> bool:
+    return begins_with(f"{one.name} = 0", entry) or is_name_of(one.name, entry)
+
+
+def _formula(right: str) -> str:
+    """What an equation comes to, without definitions of the entry; mostly all of it."""
+    sides = [side.strip() for side in right.split("=")]
+    return " = ".join(one for one in sides if not says_what_it_is(one))
+
+
+def _equations(text: str) -> Iterator[_Equation]:
+    """Each name with what it is said to be, in order."""
+    last = 0
+    for found in _NAMED.finditer(text):
+        front = text[: found.start()].rstrip(" \t")
+        if found.start() < last or (front.endswith(_OPERATORS) and not front.endswith("==")):
+            continue
+        if front[-1:] and front[-1] not in "\n,;:.，；：。、" and not _WORD.search(front):
+            continue
+        right, last = _right_side(text, found.end())
+        if right:
+            yield _Equation(found["name"], right)
+
+
+def _right_side(text: str, begin: int) -> tuple[str, int]:
+    """A formula from where it begins, and where it ends."""
+    end = len(text)
+    for one in _END.finditer(text, begin):
+        inside = text[begin : one.start()]
+        depth = sum(map(inside.count, "([{")) - sum(map(inside.count, ")]}"))
+        word = one["word"]
+        if depth > 0 or not inside.strip() or (word and not is_word(word, text, one)):
+            continue
+        end = one.start()
+        break
+    return " ".join(text[begin:end].split()), end
+
+
+def _explaining(chain: str, others: dict[str, _Equation]) -> list[_Equation]:
+    """The equations of names that stand in a formula, those first that others rest on."""
+    kept: dict[str, _Equation] = {}
+    waiting = [chain.partition("=")[2]]
+    while waiting:
+        plain = re.sub(r"[_{}\\\s]", "", waiting.pop())
+        for name, one in others.items():
+            written = re.sub(r"[_{}\\\s]", "", one.name)
+            used = re.search(rf"(?<![A-Za-z]){re.escape(written)}(?!\d)", plain)
+            if used and name not in kept:
+                kept[name] = one
+                waiting.append(one.right)
+    return [*reversed(kept.values())]
