@@ -830,14 +830,27 @@ def readings(text: str, entry: str) -> list[str]:
     formulas = [part for part in parts if part not in names] or parts[-1:]
     left = next((name for name in names if begins_with(f"{name} =", entry)), "")
     strange = any(name != left and not _also(name, entry) for name in names)
-    strange |= len(parts) > 2 and named[-1] and not _may_end(parts[-1], entry)
-    several = any(len(parts_at(formula, ",;")) > 1 for formula in formulas)
+    says = named[-1] or says_what_it_is(parts[-1])
+    strange |= len(parts) > 2 and says and not _may_end(parts[-1], entry)
+    several = any(
+        len(parts_at(formula, ",;")) > 1 or _is_of_two_lines(formula) for formula in parts
+    )
     alone = len(parts) == 2 and (names or not _is_formula(parts[0]))
     if alone or strange or several:
         return [text]
     formulas = [one for one in formulas if not says_what_it_is(one)] or formulas[-1:]
     left = f"{left or names[0]} = " if names else ""
     return [f"{dollars}{left}{formula}{dollars}" for formula in reversed(formulas)]
+
+
+def _is_of_two_lines(part: str) -> bool:
+    """Whether another equation begins on a new line within what stands between two signs."""
+    for found in re.finditer(r"\n\s*(?![\s+*/·^)\]}-])", part.strip()):
+        front = part.strip()[: found.start()]
+        inside = front.count("\\begin") != front.count("\\end")
+        if not inside and sum(map(front.count, "([{")) == sum(map(front.count, ")]}")):
+            return True
+    return False
 
 
 def _is_formula(text: str) -> bool:
@@ -867,10 +880,17 @@ def _is_formula_of(text: str, entry: str) -> bool:
 
 
 def _may_end(name: str, entry: str) -> bool:
-    r"""Whether a chain of equalities may end in a name: M21 of M12, ``g_2(q)``.
+    r"""Whether a chain of equalities may end in a name, or in what the entry is: ``M21`` of M12.
 
-    ``g_2 = ... = g_1`` says something of g1, and ``= I_2`` of a number of the arm's.
+    ``g_2 = ... = g_1`` says something of g1, ``= I_2`` of a number of the arm's, and ``= -x``, or a
+    derivative, what is true of one entry of the Jacobian alone.
     """
+    name = _SLOPE.sub(r"d\1/dq\2", name).strip("& .$")
+    if says_what_it_is(name) and not is_name(name):
+        whole = re.sub(r"\s", "", _SCRIPT.sub(r"\1", name))
+        told = (_head_and_places(entry_name(entry))[1], whole) == ("11", "-y")
+        told |= entry in ("L", "lagrangian") and bool(re.fullmatch("[TK]-[VUP]", whole))
+        return told or begins_with(f"{name} =", entry)
     of_state = re.sub(r"[^(]*", "", name, count=1)
     if of_state and not re.search(r"[qθΘϑ]|[tT]h(?:eta)?", of_state):
         return False
@@ -880,6 +900,7 @@ def _may_end(name: str, entry: str) -> bool:
     known = head == mine or any({head, mine} <= group for group in _MEANT)
     others = known and any(of_one_name(one, entry) for one in across)
     point = plain.replace("_", "") in _POINT and plain[-1] == entry
+    point |= plain == "x" and _heads("J21", entry, None) == (("j", "21"), ("j", "21"))
     return begins_with(f"{name} =", entry) or others or point
 
 
@@ -1105,6 +1126,11 @@ _IN_BOOKS = (
 """What books call the same thing: Spong's d11 and phi1, Craig's V, Siciliano's B."""
 _MEANT = tuple({word.lower() for word in group.split()} for group in _IN_BOOKS)
 _SYMMETRIC = _MEANT[0]
+_SLOPE = re.compile(
+    r"\\[dt]?frac\s*\{\s*\\partial\s*\\?(?:mathcal\s*)?\{?([A-Za-z])\}?\s*\}"
+    r"\s*\{\s*\\partial\s*\\?(?:q|theta)_?\{?([1-9])\}?\s*\}"
+)
+"""The derivative of a coordinate, or an energy, by a joint's position, in LaTeX."""
 _POSES = {"t", "a", "h", "fk"}
 _ROTATION = re.compile(r"[123]{2}")
 """The places of a rotation, alone or in a transform: r11 is T11."""

@@ -15,14 +15,17 @@ from kinlab.formulas.handed.sentences import is_word
 from kinlab.formulas.handed.vocabulary import CHINESE, LATIN
 from kinlab.formulas.typed import begins_with, is_name_of, own_name, says_what_it_is
 
-_GRID = re.compile(r"\\begin\{\w*(?:matrix|array|cases)\*?\}|\bdef\b|\blambda\b|\breturn\b|\[\[")
-"""What stands in lines of its own, and is no step."""
+_PROGRAM = re.compile(r"\bdef\b|\blambda\b|\breturn\b|\[\[")
+_GRID = re.compile(r"\\begin\{(\w*(?:matrix|array|cases)\*?)\}.{0,2000}?\\end\{\1\}", re.DOTALL)
+"""A matrix, which is no entry."""
+_A_GRID = "\0"
 _LINES = re.compile(
     r"\\\\(?:\[[\w. ]{0,9}\])?|\\(?:begin|end)\{[a-z]+\*?\}|\\[\[\]()]|\$+|&|\\q?quad(?![A-Za-z])"
     r"|\\(?:Rightarrow|Longrightarrow|implies|therefore|Leftrightarrow|iff)(?![A-Za-z])"
     r"|(?<![<>=])=>|[⇒⟹→⟶∴⇔]|\\text\w*\s*\{[^{}]*\}"
 )
 """Where one step ends and another begins; words in LaTeX."""
+_GAPS = re.compile(r"\\[,;:! ]")
 _LETTER = r"(?:\\?[A-Za-z]{1,8}|[α-ωΑ-Ω𝜃𝜏])"
 _INDEX = r"(?:_?\d{1,3}(?:,\d)?|[₀-₉]{1,3}|_?\{[^{}=\n]{1,12}\}|_[A-Za-z]\d?)"
 _NAMED = re.compile(
@@ -38,7 +41,16 @@ _END = re.compile(
     r"|\n(?!\s*(?:[=+*/·]|[-−]\s|\\cdot))"
 )
 """What ends a formula, outside of brackets; a word where it is none of a formula."""
+_NUMBER = re.compile(r"[\d₀-₉]")
 _STEPS = 6
+
+
+_GOES_ON = re.compile(r"[ \t]*(?:[(\[+*/^=−-]|\\(?!text)|\d)")
+"""What a formula goes on with, behind what ends one."""
+
+
+class _UnsureError(Exception):
+    """Where a formula ends is not sure."""
 
 
 @dataclass(frozen=True)
@@ -57,28 +69,37 @@ def conclusion(text: str, entry: str) -> str:
     Returns:
         Empty where there is no other equation, or none of the entry.
     """
-    if _GRID.search(text):
+    if _PROGRAM.search(text):
         return ""
-    found = [*_equations(_LINES.sub("\n", text))]
-    own = [one for one in found if _is_of(one, entry)]
-    formulas = [right for one in own if (right := _formula(one.right))]
-    if not formulas or len(found) < 2 or len(formulas) > _STEPS:
+    text = _GRID.sub(_A_GRID, text)
+    try:
+        found = [*_equations(_LINES.sub("\n", _GAPS.sub(" ", text)))]
+    except _UnsureError:
+        return ""
+    own = [one for one in found if begins_with(f"{one.name} = 0", entry)]
+    own = own or [one for one in found if _NUMBER.search(one.name) and is_name_of(one.name, entry)]
+    formulas = [right for one in own[:-1] if (right := _formula(one.right))]
+    formulas += [_formula(one.right, True) for one in own[-1:]]
+    if not formulas or text.count("=") < 2 + own[-1].right.count("=") or len(formulas) > _STEPS:
         return ""
     others = {own_name(one.name): one for one in found if one not in own}
     chain = " = ".join([own[-1].name, *dict.fromkeys(formulas)])
     kept = [f"{one.name} = {one.right}" for one in _explaining(chain, others)]
     told = "; ".join([*kept, chain])
-    return f"${told}$" if "\\" in told else told
+    told = f"${told}$" if "\\" in told else told
+    return "" if _A_GRID in told else told
 
 
-def _is_of(one: _Equation, entry: str) -> bool:
-    return begins_with(f"{one.name} = 0", entry) or is_name_of(one.name, entry)
+def _formula(right: str, last: bool = False) -> str:
+    """What an equation comes to, without definitions of the entry; mostly all of it.
 
-
-def _formula(right: str) -> str:
-    """What an equation comes to, without definitions of the entry; mostly all of it."""
-    sides = [side.strip() for side in right.split("=")]
-    return " = ".join(one for one in sides if not says_what_it_is(one))
+    Args:
+        right: its right side.
+        last: whether its end is that of the whole, which stays.
+    """
+    *sides, end = [side.strip() for side in right.split("=")]
+    kept = [one for one in sides if not says_what_it_is(one)]
+    return " = ".join([*kept, *([end] if last or not says_what_it_is(end) else [])])
 
 
 def _equations(text: str) -> Iterator[_Equation]:
@@ -105,6 +126,8 @@ def _right_side(text: str, begin: int) -> tuple[str, int]:
         if depth > 0 or not inside.strip() or (word and not is_word(word, text, one)):
             continue
         end = one.start()
+        if _GOES_ON.match(text, one.end()) and one[0] != "\n" and not word:
+            raise _UnsureError
         break
     return " ".join(text[begin:end].split()), end
 

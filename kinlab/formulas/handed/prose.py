@@ -11,7 +11,15 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
-from kinlab.formulas.handed.vocabulary import BEHIND, CHINESE, LATIN, chinese_left, says_nothing
+from kinlab.formulas.handed.vocabulary import (
+    BEHIND,
+    CHINESE,
+    LATIN,
+    STEPS,
+    chinese_left,
+    says_nothing,
+)
+from kinlab.formulas.typed import begins_with
 
 _FONT = re.compile(r"\\(?:text|textrm|textit|textbf|mbox|textnormal|mathrm|rm|hbox)\s*\{([^{}]*)\}")
 _BELOW = re.compile(rf"_\s*(?:\{{[^{{}}]*(?:\{{[^{{}}]*\}})?[^{{}}]*\}}|[{LATIN}]+|\w)")
@@ -207,14 +215,45 @@ def doubtful(text: str, entry: str) -> list[tuple[str, str]]:
         entry: what the formula is asked for.
     """
     found = [("", clause) for clause in _shares(text)]
-    for prose, typeset in _proses(text):
+    begin = _of_other_steps(text, entry)
+    for prose, typeset in _proses(text[:begin]):
+        found += _of(_DOES_NOT.sub(" ", _FRAME.sub(" ", prose)), STEPS, typeset)
+    for prose, typeset in _proses(text[begin:]):
         front, behind = _cut(_FRAME.sub(" ", prose))
         found += _of(front, entry, typeset) + _parts(front, entry)
         found += _of_names(behind, typeset, text)
+    for prose in outside_formulas(text):
         frames = () if "tool" in entry else (_OTHER_FRAME,)
         for kind in (_UP_TO, _ELSEWHERE, _SCALED, *frames):
             found += [(one[0], around(prose, *one.span())) for one in kind.finditer(prose)]
     return found + _conditions(text)
+
+
+def _of_other_steps(text: str, entry: str) -> int:
+    """Where the sentence begins in which a derivation gives the entry last; 0 of what is none."""
+    named = (x for x in _LEFT_SIDE.finditer(text) if begins_with(f"{x['name']} = 0", entry))
+    last = max((found.start("name") for found in named), default=0)
+    ends = [found.end() for found in _SENTENCE_ENDS.finditer(text, 0, last)]
+    while ends and not re.search(rf"[{LATIN}]{{2,}}|[{CHINESE}]", text[ends[-1] : last]):
+        last = ends.pop()  # what leads over to the equation stands on a line above
+        if "=" in text[ends[-1] if ends else 0 : last]:
+            break
+    begin = ends[-1] if ends and "=" not in text[ends[-1] : last] else last
+    return begin if "=" in text[:begin] else 0
+
+
+_LEFT_SIDE = re.compile(
+    r"(?:^|(?<=[\s$&:：,，;；{CHINESE}]))(?P<name>\\?[A-Za-zα-ωΑ-Ω][^\s=+*/^-]{0,24})\s?&?\s?:?=(?!=)".replace(
+        "{CHINESE}", CHINESE
+    )
+)
+_DOES_NOT = re.compile(
+    r"\b(?:does|do)(?:\s+not|n['’]t)\s+(?:depend|contain|appear|matter|enter|vary|occur|contribute"
+    r"|change|affect)\w*|\bhäng\w+\s+nicht\b|\bnicht\s+(?:von|ab)\b",
+    re.IGNORECASE,
+)
+"""What other sentences say of a term, and not of when something holds."""
+_SENTENCE_ENDS = re.compile(r"[。;；\n]|\.(?=\s)|\\\\")
 
 
 def explained_by(text: str) -> str:

@@ -18,6 +18,8 @@ LATIN = f"A-Za-zÀ-ÖÙ-öù-ÿąčćďěęłńňřšśťůžźőűİıŞşĞğ{
 """Letters of words, for patterns; without those that are signs of mathematics (ø, ż)."""
 BEHIND = "behind"
 """In an entry's place: what is said of the names in a formula."""
+STEPS = "steps"
+"""The same: what is said in other sentences of a derivation than that of the entry."""
 
 _LONGEST = 8
 """Signs of the longest Chinese word."""
@@ -80,4 +82,5 @@ def _known(entry: str, script: str) -> frozenset[str]:
     lists = [anywhere[key] for key in anywhere if (key == "chinese") == (script == "chinese")]
     of_entry = [one for one in _lists()["of"] if re.match(rf"(?:{one['entries']})(?![a-z])", entry)]
     of_entry += [_lists()["behind"]] if entry == BEHIND else []
+    of_entry += [*_lists()["of"], _lists()["steps"]] if entry == STEPS else []
     return frozenset(" ".join([*lists, *(one[script] for one in of_entry)]).split())
