@@ -131,12 +131,12 @@ def formula_file(
     try:
         return read({})
     except ExpressionError:
-        ends = {key: _conclusion(key, value) for key, value in _every_text(document)}
-        ends = {key: end for key, end in ends.items() if end}
-        if not ends:
-            raise
-        with suppress(ExpressionError):
-            return read(ends)
+        for alone in (False, True):
+            found = {key: _conclusion(key, text, alone) for key, text in _every_text(document)}
+            ends = {key: end for key, end in found.items() if end}
+            with suppress(ExpressionError):
+                if ends:
+                    return read(ends)
         raise
 
 
@@ -148,11 +148,13 @@ def _every_text(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
                 yield name, value[:LENGTH]
 
 
-def _conclusion(entry: str, text: str) -> str:
+def _conclusion(entry: str, text: str, alone: bool) -> str:
     """What a derivation comes to; empty where it is none, or words in it mean something else."""
     with suppress(ExpressionError):
-        refuse_meanings(text, entry, "")
-        return conclusion(text, entry)
+        found = conclusion(text, entry, alone)
+        if found:
+            refuse_meanings(text, entry, "")
+        return found
     return ""
 
 

@@ -872,11 +872,17 @@ def _is_formula_of(text: str, entry: str) -> bool:
     ``m_2`` and ``m_2(q_2)`` are a mass and its product where M12 is asked for; with rates in
     parentheses it is a product: ``h(\dot q_1 \dot q_2)``.
     """
+    if _PRODUCT.fullmatch(text.strip("& .")):
+        return True
     (head, places), (mine, asked) = map(_head_and_places, map(entry_name, (text, entry)))
     meant = head == mine or any({head, mine} <= group for group in _MEANT)
     if places and asked and len(places) != len(asked) and (meant or "(" in text):
         return True
     return "(" in text and head != mine and not (meant and bool(places) == bool(asked))
+
+
+_PRODUCT = re.compile(r"(?:[A-Za-z]_?(?:\d{1,2}|\{\w{1,3}\})\s?){2,}")
+"""Names with indices side by side: ``l_1l_2s_2``."""
 
 
 def _may_end(name: str, entry: str) -> bool:

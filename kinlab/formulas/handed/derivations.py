@@ -30,7 +30,7 @@ _LETTER = r"(?:\\?[A-Za-z]{1,8}|[α-ωΑ-Ω𝜃𝜏])"
 _INDEX = r"(?:_?\d{1,3}(?:,\d)?|[₀-₉]{1,3}|_?\{[^{}=\n]{1,12}\}|_[A-Za-z]\d?)"
 _NAMED = re.compile(
     rf"(?<![\w\\}}\])])(?P<name>(?:\\d?dot\s*\{{?\s*)?{_LETTER}[̇̈]?\}}?{_INDEX}?"
-    r"(?:\[[\d,: ]{1,9}\]|\(\s*\d\s*,\s*\d\s*\))?)"
+    r"(?:\[[\d,: ]{1,9}\]|\(\s?\d\s?,\s?\d\s?\))?(?:\^\{?2\}?|²|\*\*2)?)"
     r"(?:\((?:[\s,;]|\\?(?:d?dot|theta|boldsymbol|mathbf)(?![a-z])|[qθ]|[{}_\d]|qd{1,2}|th|[̇̈])+\))?"
     r"\s*:?=(?!=)"
 )
@@ -41,8 +41,10 @@ _END = re.compile(
     r"|\n(?!\s*(?:[=+*/·]|[-−]\s|\\cdot))"
 )
 """What ends a formula, outside of brackets; a word where it is none of a formula."""
+_SQUARE = re.compile(r"(?:\^\{?2\}?|²|\*\*2)$")
 _NUMBER = re.compile(r"[\d₀-₉]")
-_STEPS = 6
+_STEPS, _LONGEST = 6, 8000
+_BLANKS = re.compile(r"(?<!\s)\s*\n\s*")
 
 
 _GOES_ON = re.compile(r"[ \t]*(?:[(\[+*/^=−-]|\\(?!text)|\d)")
@@ -59,32 +61,36 @@ class _Equation:
     right: str
 
 
-def conclusion(text: str, entry: str) -> str:
+def conclusion(text: str, entry: str, last: bool = False) -> str:
     """The equations of the entry in a text of several steps, as one chain, and what explains them.
 
     Args:
         text: as typed.
         entry: what it is asked for.
+        last: whether the last of them is taken alone.
 
     Returns:
         Empty where there is no other equation, or none of the entry.
     """
-    if _PROGRAM.search(text):
+    if text.count("=") < 2 or len(text) > _LONGEST or _PROGRAM.search(text):
         return ""
-    text = _GRID.sub(_A_GRID, text)
+    text = _BLANKS.sub("\n", _GRID.sub(_A_GRID, text))
     try:
         found = [*_equations(_LINES.sub("\n", _GAPS.sub(" ", text)))]
     except _UnsureError:
         return ""
     own = [one for one in found if begins_with(f"{one.name} = 0", entry)]
     own = own or [one for one in found if _NUMBER.search(one.name) and is_name_of(one.name, entry)]
+    own = own[-1:] if last else own
     formulas = [right for one in own[:-1] if (right := _formula(one.right))]
     formulas += [_formula(one.right, True) for one in own[-1:]]
     if not formulas or text.count("=") < 2 + own[-1].right.count("=") or len(formulas) > _STEPS:
         return ""
-    others = {own_name(one.name): one for one in found if one not in own}
+    others = {own_name(one.name): one for one in found if one.name != own[-1].name}
     chain = " = ".join([own[-1].name, *dict.fromkeys(formulas)])
     kept = [f"{one.name} = {one.right}" for one in _explaining(chain, others)]
+    if any(_SQUARE.search(one.name) and f"{one.name} =" not in "".join(kept) for one in found):
+        return ""  # what is explained is a square, and none stands in the formula
     told = "; ".join([*kept, chain])
     told = f"${told}$" if "\\" in told else told
     return "" if _A_GRID in told else told

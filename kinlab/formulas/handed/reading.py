@@ -131,6 +131,11 @@ _WHERE = re.compile(
 _AND = re.compile(rf"(?<=\s)(?:et|y|e|и)\s+(?={_NAMED})")
 """What stands between a formula and what is explained behind it, and between two such."""
 _FULL_STOP = re.compile(r"(?<=\$)\s{0,9}[。．]\s*$")
+_UNIT = re.compile(
+    r"(?<=\$)\s{0,9}[(\[]\s?(?:(?:in\s)?(?:N\s?[·.]?\s?m|N|J|kg(?:\s?[·.]?\s?m(?:\^2|²))?|m|rad)(?:/s(?:\^2|²)?)?)\s?[)\]]"
+    r"\s{0,9}\.?\s*$"
+)
+"""An SI unit in brackets behind a formula's dollars."""
 _IN_WORDS = re.compile(r"\\text\s*\{\s*([()\[\]])\s*\}")
 """A bracket that is set as words are: ``\\text{(}d_3 = q_3)``."""
 _SPACED = r"(?:\\q?quad|\\[,;: ]|\s){0,4}"
@@ -195,7 +200,7 @@ def as_formula(
     text = _BOLD.sub(lambda found: found[1] or f"{found[2]}:", text)
     text = _GREEK_ANGLE.sub(r"\1(\2)", text) if "\\" not in text else text
     text = _ACCENTED.sub(lambda letter: unicodedata.normalize("NFC", letter[0]), text)
-    text = _FULL_STOP.sub("", text)
+    text = _UNIT.sub("", _FULL_STOP.sub("", text))
     text = _FOLLOWS.sub("\n", _IN_WORDS.sub(r"\1", _ELLIPSIS.sub(".", text)))
     text = for_each_joint(_in_english(with_units_inside(_STAR_SAID.sub("", text))))
     text = _ABBREVIATED.sub(_where, text)

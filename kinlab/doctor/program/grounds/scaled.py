@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 import math
 import operator
+import re
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
@@ -277,11 +278,19 @@ def _one_for_several(found: Sequence[ProgramNumber], kinds: Kinds) -> bool:
     return any(1 <= np.isclose(named, m).sum() < np.isclose(masses, m).sum() for m in masses)
 
 
+_DECIMALS = re.compile(r"\d\.\d")
+"""What numbers in a text have."""
+
+
 def holds_an_arm(trial: Trial) -> bool:
     """Whether a program asks an arm itself, or this package, where no other can be put.
 
-    Nor can it be where an array has too many numbers.
+    Nor can it be where an array has too many numbers, or where these are read from a text.
     """
+    read = (x.value for part in trial.program.parts if part.sets for x in nodes(part.tree)
+            if isinstance(x, ast.Constant) and isinstance(x.value, str))  # fmt: skip
+    if any(len(_DECIMALS.findall(text)) > 1 for text in read):
+        return True
     used = {name for tree in trial.trees for name in named_in(tree)}
     held = [value for name, value in trial.program.space.items() if name in used]
     kept = [attributes(one) for one in (*held, *trial.program.bound)]

@@ -19,6 +19,10 @@ _AXES = 2
 _ORDERED = ("cross", "dot", "arctan2", "atan2", "outer", "solve", "matmul", "subtract", "array")
 _PRODUCT = 1.05
 """Cost of a product of matrices the other way about."""
+_BEHIND = 1.02
+"""Cost of a list without its first, beside one that is so much shorter."""
+_OF_THE_PART, _UNCALLED = 1.1, 1.02
+"""Cost of another function of the part's own, less of one that nothing calls."""
 _DIAGONAL = 1.02
 """Cost of the main diagonal for another."""
 _ARGUMENTS, _APART = 4, 0.03
@@ -124,7 +128,11 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
     if name == "zip" and len(cut := {_cut(one) for one in node.args}) == 1 and cut != {""}:
         wholes = [getattr(one, "value", one) for one in node.args]
         yield here.within(node, "args", wholes, "loop", 1.08)
+    if name == "zip":
+        yield from _behind_the_first(here, observed)
     yield from _other_function(here, name)
+    if isinstance(node.func, ast.Name) and name not in scope.functions and name not in scope.space:
+        yield from _other_of_the_part(here, name)
     if name == "list" and len(node.args) == 1 and scope.accumulating:
         yield from _accumulated(here, scope.accumulating)
     yield from _of_a_copy(here, scope, observed)
@@ -190,6 +198,33 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
         if name == "solve" and len(plain) == 2:
             product = ast.BinOp(plain[0], ast.MatMult(), plain[1])
             yield here.instead(product, "inverse", 1.25)
+
+
+def _behind_the_first(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
+    """All but the first of what has one more than what it runs beside: ``list(poses)[1:]``."""
+    args = here.node.args
+    sizes = [(observed.shape(one) or (0,))[0] for one in args]
+    for k, (one, size) in enumerate(zip(args, sizes, strict=True)):
+        if size > 1 and size - 1 in sizes and not isinstance(one, ast.Subscript):
+            behind = ast.Subscript(one, ast.Slice(number(1)), ast.Load())
+            yield here.within(args, k, behind, "index", _BEHIND)
+
+
+def _other_of_the_part(here: Here, name: str) -> Iterator[ProgramEdit]:
+    """Another function that is defined where it is called: ``u(t)`` for ``n(t)``."""
+    inner = nodes(here.above[0])
+    made: dict[str, ast.arguments] = {}
+    for one in inner:
+        if isinstance(one, ast.FunctionDef):
+            made[one.name] = one.args
+        elif isinstance(one, ast.Assign) and isinstance(one.value, ast.Lambda):
+            made |= {x.id: one.value.args for x in one.targets if isinstance(x, ast.Name)}
+    used = {called(one) for one in inner if isinstance(one, ast.Call)}
+    for other, args in made.items() if name in made else ():
+        if other != name and len(args.args) == len(made[name].args):
+            new = ast.Name(other, ast.Load())
+            cost = _OF_THE_PART if other in used else _UNCALLED
+            yield here.within(here.node, "func", new, "function", cost)
 
 
 def _whole_arc(node: ast.Call, scope: Scope, name: str) -> ast.expr | None:
