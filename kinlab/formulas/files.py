@@ -37,7 +37,7 @@ from kinlab.formulas.handed.equations import solved
 from kinlab.formulas.handed.prose import Doubt, doubtful, left_over
 from kinlab.formulas.handed.rates import MOVING
 from kinlab.formulas.handed.reading import as_formula
-from kinlab.formulas.handed.words import refuse_meanings
+from kinlab.formulas.handed.words import refuse_meanings_of_steps
 from kinlab.formulas.signs.latex import LAMBDA
 from kinlab.formulas.signs.letters import WIDE
 from kinlab.formulas.signs.named import (
@@ -153,7 +153,7 @@ def _conclusion(entry: str, text: str, alone: bool) -> str:
     with suppress(ExpressionError):
         found = conclusion(text, entry, alone)
         if found:
-            refuse_meanings(text, entry, "")
+            refuse_meanings_of_steps(text, entry, "")
         return found
     return ""
 

@@ -215,7 +215,7 @@ def doubtful(text: str, entry: str) -> list[tuple[str, str]]:
         entry: what the formula is asked for.
     """
     found = [("", clause) for clause in _shares(text)]
-    begin = _of_other_steps(text, entry)
+    begin = own_sentence(text, entry)
     for prose, typeset in _proses(text[:begin]):
         found += _of(_DOES_NOT.sub(" ", _FRAME.sub(" ", prose)), STEPS, typeset)
     for prose, typeset in _proses(text[begin:]):
@@ -229,8 +229,13 @@ def doubtful(text: str, entry: str) -> list[tuple[str, str]]:
     return found + _conditions(text)
 
 
-def _of_other_steps(text: str, entry: str) -> int:
-    """Where the sentence begins in which a derivation gives the entry last; 0 of what is none."""
+def own_sentence(text: str, entry: str) -> int:
+    """Where the sentence begins in which a derivation gives the entry last; 0 of what is none.
+
+    Args:
+        text: as typed.
+        entry: what it is asked for.
+    """
     named = (x for x in _LEFT_SIDE.finditer(text) if begins_with(f"{x['name']} = 0", entry))
     last = max((found.start("name") for found in named), default=0)
     ends = [found.end() for found in _SENTENCE_ENDS.finditer(text, 0, last)]

@@ -19,6 +19,7 @@ from kinlab.formulas.handed.prose import (
     of_another_point,
     of_other_axes,
     outside_formulas,
+    own_sentence,
 )
 from kinlab.formulas.handed.sentences import without_sentences
 from kinlab.formulas.handed.vocabulary import is_program
@@ -359,6 +360,26 @@ def refuse_meanings(text: str, entry: str, place: str) -> None:
             "write name = formula"
         )
         raise refused(place, said, words=words)
+
+
+def refuse_meanings_of_steps(text: str, entry: str, place: str) -> None:
+    """The same of a derivation: in sentences before the entry's own what changes the whole.
+
+    What is to be added there, and of what another line is, says nothing of the last one.
+
+    Args:
+        text, entry, place: as for :func:`refuse_meanings`.
+
+    Raises:
+        ExpressionError: with the words.
+    """
+    begin = own_sentence(text, entry)
+    for prose in outside_formulas(text[:begin]):
+        if found := _OTHERWISE.search(prose) or _DENIED.search(prose):
+            raise refused(place, _CHANGED, words=around(prose, *found.span()))
+    if said := moment_elsewhere(text) or of_other_axes(text, entry):
+        raise refused(place, _CHANGED, words=said)
+    refuse_meanings(text[begin:], entry, place)
 
 
 def _of_another_coordinate(text: str, entry: str) -> str:

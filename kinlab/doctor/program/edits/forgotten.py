@@ -10,7 +10,7 @@ from itertools import combinations, permutations
 from kinlab.doctor.bytecode.syntax import called, copied, factors, names, nodes, text_of
 from kinlab.doctor.program.edits.additions import OtherAxis, summed
 from kinlab.doctor.program.edits.exchanges import Renamed
-from kinlab.doctor.program.edits.scope.forms import Turned, named, summands
+from kinlab.doctor.program.edits.scope.forms import Turned, block_of, named, summands
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.entries import keys_of
 from kinlab.doctor.program.edits.single.whole import whole_constant
@@ -28,6 +28,8 @@ _DIAGONAL = 1.06
 """What it is to forget what is used nowhere on a diagonal."""
 _IDLE_DIAGONAL = 0.96
 """The same where the matrix is given on."""
+_LINES, _AS_BESIDE = 3, 1.07
+"""Lines above and below that are like one; cost of a number that these end with."""
 _FEW = 8
 """Names of one kind that are tried."""
 _BOTH, _INDICES = 2, 3
@@ -58,6 +60,7 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
         if isinstance(parent, _SET):
             yield from _energies(here, scope)
             yield from _of_all_joints(here, scope)
+            yield from _as_in_lines_beside(here)
         if isinstance(parent, _SET | ast.List | ast.Tuple):
             yield from _crosswise(here)
         if isinstance(parent, ast.List | ast.Tuple):
@@ -502,6 +505,18 @@ def _as_beside(here: Here, entries: Sequence[ast.expr]) -> Iterator[ProgramEdit]
         if factor.id not in used:
             new = ast.BinOp(ast.UnaryOp(ast.USub(), factor), ast.Mult(), here.node)
             yield here.instead(new, "missing factor", 1.15)
+
+
+def _as_in_lines_beside(here: Here) -> Iterator[ProgramEdit]:
+    """A number that the sums above or below end with: ``a12 = x*y`` beside ``a11 = x*x + 1``."""
+    block, at = block_of(here.above)
+    near = block[max(at - _LINES, 0) : at + _LINES + 1] if isinstance(here.node, ast.BinOp) else []
+    sums = (line.value for line in near if isinstance(line, ast.Assign))
+    ends = [x for x in sums if isinstance(x, ast.BinOp) and isinstance(x.op, _SUMS)]
+    told = {(type(x.op), text_of(x.right)): x for x in ends if isinstance(x.right, ast.Constant)}
+    if not any(one is here.node for one in told.values()):
+        for one in told.values():
+            yield here.instead(ast.BinOp(here.node, one.op, one.right), "missing term", _AS_BESIDE)
 
 
 def _under_a_wave(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import permutations
 from typing import Any
 
-from kinlab.doctor.bytecode.syntax import copied, nodes, text_of
+from kinlab.doctor.bytecode.syntax import copied, names, nodes, text_of
 from kinlab.doctor.program.edits.scope.forms import statement_of
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.rows import swapped_in
@@ -28,6 +28,8 @@ _COUNTED = 1.09
 """Cost of an index by which entries of other rows are taken."""
 _SET_ANEW, _WITH_A_NAME = 1.06, 1.14
 """Cost of what a statement sets, for a part of something; of another vector with a name."""
+_OWN = 1.1
+"""Cost of the entry of another list by the counter itself, for one more or one less."""
 _BESIDE = 1.06
 """Cost of an index that another row has in the same line."""
 
@@ -86,9 +88,42 @@ def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
                     yield here.within(holder, field, copied(index), "index", 1.08)
     _holder, _field, key = keys[0]
     single = len(keys) == 1 and not isinstance(node.slice, ast.Tuple)
+    if single and isinstance(key, ast.BinOp) and isinstance(node.ctx, ast.Load):
+        yield from _own_of_another(here, key, scope, observed)
+    elif single and isinstance(key, ast.Name) and isinstance(node.ctx, ast.Load):
+        yield from _next_of_another(here, key, scope, observed)
     if single and shape is not None and len(shape) == 2 and not isinstance(key, ast.Slice):
         column = ast.Tuple([ast.Slice(None, None, None), key], ast.Load())
         yield here.within(node, "slice", column, "transposed", 1.15)
+
+
+def _own_of_another(
+    here: Here, key: ast.BinOp, scope: Scope, observed: Observed
+) -> Iterator[ProgramEdit]:
+    """A link's own vector in another list, for the next one's: ``PC[i]`` for ``P[i + 1]``."""
+    shape = observed.shape(here.node)
+    for counter in (one for one in (key.left, key.right) if isinstance(one, ast.Name)):
+        for other, entries in scope.lists.items() if shape and counter.id in scope.counting else ():
+            if entries == shape and other != getattr(here.node.value, "id", ""):
+                own = ast.Subscript(ast.Name(other, ast.Load()), copied(counter), ast.Load())
+                yield here.instead(own, "name", _OWN)
+
+
+def _next_of_another(
+    here: Here, key: ast.Name, scope: Scope, observed: Observed
+) -> Iterator[ProgramEdit]:
+    """The other way round: the way to the next joint for a link's own vector."""
+    shape = observed.shape(here.node)
+    lists = [one for one, entries in scope.lists.items() if shape and entries == shape]
+    others = [one for one in lists if one != getattr(here.node.value, "id", "")]
+    if not others or key.id not in scope.counting:
+        return
+    every = (one.slice for one in nodes(here.above[0]) if isinstance(one, ast.Subscript))
+    keys = {text_of(one): one for one in every if isinstance(one, ast.BinOp)}
+    for index in (one for one in keys.values() if key.id in names(one)):
+        for other in others:
+            new = ast.Subscript(ast.Name(other, ast.Load()), copied(index), ast.Load())
+            yield here.instead(new, "name", _OWN)
 
 
 def _named(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
