@@ -254,7 +254,10 @@ _LEFT_SIDE = re.compile(
 )
 _DOES_NOT = re.compile(
     r"\b(?:does|do)(?:\s+not|n['’]t)\s+(?:depend|contain|appear|matter|enter|vary|occur|contribute"
-    r"|change|affect)\w*|\bhäng\w+\s+nicht\b|\bnicht\s+(?:von|ab)\b",
+    r"|change|affect)\w*"
+    r"|\bonly\s+(?:;\s*)?(?:appears?|occurs?|enters?|contributes?)\b"
+    r"|\bonly\s+(?:the\s+)?(?:first|second|third|last)\s+(?:term|row|column|part)\b"
+    r"|\b(?:appears?|depends?|occurs?|contains?|enters?)\s+only\b|\bhäng\w+\s+nicht\b|\bnicht\s+(?:von|ab)\b",
     re.IGNORECASE,
 )
 """What other sentences say of a term, and not of when something holds."""
