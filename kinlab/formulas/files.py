@@ -32,7 +32,7 @@ from kinlab.errors import ExpressionError, FileError
 from kinlab.formulas import grids, tree, typed
 from kinlab.formulas.handed.clauses import Claim, Holds
 from kinlab.formulas.handed.columns import with_matrices
-from kinlab.formulas.handed.derivations import conclusion
+from kinlab.formulas.handed.derivations import conclusion, steps_beside
 from kinlab.formulas.handed.equations import solved
 from kinlab.formulas.handed.prose import Doubt, doubtful, left_over
 from kinlab.formulas.handed.rates import MOVING
@@ -278,6 +278,14 @@ def _formula_file(
             remarks |= dict.fromkeys(apart, remarks[key]) if key in remarks else {}
     left = {key: left_over(*doubts[key], names) for key in doubts.keys() & file.formulas.keys()}
     unread = {key: words for key, words in left.items() if words}
+    given = {*map(_bare_name, names)}
+    for key in left.keys() - ends.keys():
+        steps = [one for one in steps_beside(doubts[key][0], key) if _bare_name(one) not in given]
+        judged = file.formulas.keys()
+        steps = [x for x in steps if not any(typed.is_name_of(x, other) for other in judged)]
+        if steps:
+            said = _("not judged: what is given for {names}").format(names=", ".join(steps))
+            remarks[key] = "; ".join(filter(None, (remarks.get(key), said)))
     file = replace(file, others=tuple(others), broken=broken)
     return replace(file, remarks=remarks, unread=unread, matrices=matrices)
 
@@ -301,6 +309,10 @@ def _of_gravity(text: str, key: str) -> str:
 
 
 _SIGNS = re.compile(r"[_{}\\\s]")
+
+
+def _bare_name(name: str) -> str:
+    return _SIGNS.sub("", name)
 
 
 def _refuse_untrue(name: str, formula: str, holds: Holds, place: str) -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 
 from kinlab.formulas.handed.sentences import is_word
@@ -43,6 +44,7 @@ _END = re.compile(
 """What ends a formula, outside of brackets; a word where it is none of a formula."""
 _SQUARE = re.compile(r"(?:\^\{?2\}?|²|\*\*2)$")
 _NUMBER = re.compile(r"[\d₀-₉]")
+_OF_LETTERS = re.compile(r"[^\W\d_]{1,8}_?\{?\d.*[^\W\d_]|[*/^+]|\\frac|sin|cos")
 _STEPS, _LONGEST = 6, 8000
 _BLANKS = re.compile(r"(?<!\s)\s*\n\s*")
 
@@ -74,9 +76,8 @@ def conclusion(text: str, entry: str, last: bool = False) -> str:
     """
     if text.count("=") < 2 or len(text) > _LONGEST or _PROGRAM.search(text):
         return ""
-    text = _BLANKS.sub("\n", _GRID.sub(_A_GRID, text))
     try:
-        found = [*_equations(_LINES.sub("\n", _GAPS.sub(" ", text)))]
+        found = _all(text)
     except _UnsureError:
         return ""
     own = [one for one in found if begins_with(f"{one.name} = 0", entry)]
@@ -94,6 +95,26 @@ def conclusion(text: str, entry: str, last: bool = False) -> str:
     told = "; ".join([*kept, chain])
     told = f"${told}$" if "\\" in told else told
     return "" if _A_GRID in told else told
+
+
+def steps_beside(text: str, entry: str) -> list[str]:
+    """The names, as typed, to which other equations than the entry's give more than a number.
+
+    Args:
+        text: as typed.
+        entry: what it is asked for.
+    """
+    if text.count("=") < 2 or len(text) > _LONGEST or _PROGRAM.search(text):
+        return []
+    with suppress(_UnsureError):
+        found = (one for one in _all(text) if _OF_LETTERS.search(one.right))
+        return [one.name for one in found if not is_name_of(one.name, entry)]
+    return []
+
+
+def _all(text: str) -> list[_Equation]:
+    text = _BLANKS.sub("\n", _GRID.sub(_A_GRID, text))
+    return [*_equations(_LINES.sub("\n", _GAPS.sub(" ", text)))]
 
 
 def _formula(right: str, last: bool = False) -> str:

@@ -239,11 +239,9 @@ def own_sentence(text: str, entry: str) -> int:
     named = (x for x in _LEFT_SIDE.finditer(text) if begins_with(f"{x['name']} = 0", entry))
     last = max((found.start("name") for found in named), default=0)
     ends = [found.end() for found in _SENTENCE_ENDS.finditer(text, 0, last)]
-    while ends and not re.search(rf"[{LATIN}]{{2,}}|[{CHINESE}]", text[ends[-1] : last]):
+    while ends and not re.search(rf"=|[{LATIN}]{{2,}}|[{CHINESE}]", text[ends[-1] : last]):
         last = ends.pop()  # what leads over to the equation stands on a line above
-        if "=" in text[ends[-1] if ends else 0 : last]:
-            break
-    begin = ends[-1] if ends and "=" not in text[ends[-1] : last] else last
+    begin = ends[-1] if ends else 0
     return begin if "=" in text[:begin] else 0
 
 

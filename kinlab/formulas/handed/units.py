@@ -122,6 +122,10 @@ _SYMBOL_OF = re.compile(r",\s*\[\s*\w+\s*\]\s*=\s*[\w ^*·/]{1,12}$")
 _WORD_M = re.compile(r"(?<![\w.\\])m(?!\w)")
 
 
+_NO_NAME = re.compile(r"N\s?[·.]?\s?m(?![A-Za-z])|kg")
+"""Units behind a formula that are none of its names."""
+
+
 def without_units(text: str, entry: str, place: str) -> str:
     """The text without units.
 
@@ -153,6 +157,11 @@ def without_units(text: str, entry: str, place: str) -> str:
         if unit and not re.search(rf"(?<![\w.\\]){re.escape(unit)}\s*=", text):
             said = N_("the formula is in {unit}; write it in SI units: m, kg, s, rad, N, J")
             raise refused(place, said, unit=unit)
+    for found in _AT_END.finditer(text):
+        size, sure = _size(unit := _unit(found)), not found["d"] or _NO_NAME.match(unit)
+        if wanted and sure and size is not None and size not in wanted:
+            said = N_("{unit} is no unit of what is asked for; leave it out, or put it right")
+            raise refused(place, said, unit=unit.strip())
     return _AT_END.sub(lambda found: _behind(found, text, wanted), text)
 
 

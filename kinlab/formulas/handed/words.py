@@ -377,8 +377,9 @@ def refuse_meanings_of_steps(text: str, entry: str, place: str) -> None:
     for prose in outside_formulas(text[:begin]):
         if found := _OTHERWISE.search(prose) or _DENIED.search(prose):
             raise refused(place, _CHANGED, words=around(prose, *found.span()))
-    if said := moment_elsewhere(text) or of_other_axes(text, entry):
-        raise refused(place, _CHANGED, words=said)
+    said = moment_elsewhere(text) or of_other_axes(text, entry)
+    if said or condition_in_front(text, entry):
+        raise refused(place, _CHANGED, words=said or text.strip()[:60])
     refuse_meanings(text[begin:], entry, place)
 
 
