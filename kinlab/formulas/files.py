@@ -278,7 +278,7 @@ def _formula_file(
             remarks |= dict.fromkeys(apart, remarks[key]) if key in remarks else {}
     left = {key: left_over(*doubts[key], names) for key in doubts.keys() & file.formulas.keys()}
     unread = {key: words for key, words in left.items() if words}
-    given = {*map(_bare_name, names)}
+    given = {*map(_bare_name, _used(file))}
     for key in left.keys() - ends.keys():
         steps = [one for one in steps_beside(doubts[key][0], key) if _bare_name(one) not in given]
         judged = file.formulas.keys()
@@ -312,7 +312,19 @@ _SIGNS = re.compile(r"[_{}\\\s]")
 
 
 def _bare_name(name: str) -> str:
+    with suppress(ExpressionError):
+        name = typed.own_name(name)
     return _SIGNS.sub("", name)
+
+
+def _used(file: FormulaFile) -> set[str]:
+    """The names that stand in formulas, and in what explains them."""
+    waiting, used = [*file.formulas.values()], set[str]()
+    while waiting:
+        more = {*tree.names(waiting.pop())} - used
+        used |= more
+        waiting += [file.symbols[name] for name in more if name in file.symbols]
+    return used
 
 
 def _refuse_untrue(name: str, formula: str, holds: Holds, place: str) -> None:

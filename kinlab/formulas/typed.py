@@ -394,14 +394,20 @@ def _of_equation(found: re.Match[str], text: str) -> bool:
     )
 
 
+_OF_CORIOLIS = re.compile(r": (?:C_?\d\d|coriolis_matrix\[\d,\d\])$")
+"""The place of an entry of the matrix whose other entries are no cosines."""
+
+
 def _capitals(text: str, place: str, writing: Hand) -> str:
     """``C12`` and ``S1`` as ``c12`` and ``s1``, unless C12 may be an entry of a matrix."""
     known = writing.known | {m[0] for m in _UPPER.finditer(text) if _of_equation(m, text)}
     found = [m for m in _UPPER.finditer(text) if m[0] not in known]
     if not found:
         return text
-    if not writing.capitals and not any(m[1] == "S" for m in found) and _RATES.search(text):
-        name = found[0][0]
+    own = [m for m in found if m[1] == "C" and len(m[2]) > 1 and _OF_CORIOLIS.search(place)]
+    unsure = not writing.capitals and not any(m[1] == "S" for m in found) and _RATES.search(text)
+    if own or unsure:
+        name = (own or found)[0][0]
         raise refused(
             f"{place}: {name}",
             N_("a cosine, or an entry of the matrix C? write {small} or cos(...) for the cosine"),

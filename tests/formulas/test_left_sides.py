@@ -250,3 +250,39 @@ def test_a_chain_may_end_in_another_name_of_the_same(entry, text, ends) -> None:
     for end in ends:
         assert kl.diagnose("planar2r_rods", entry, f"{text} = {end}").agrees
         assert not kl.diagnose("planar2r_rods", entry, f"{text} + l1 = {end}").agrees
+
+
+@pytest.mark.parametrize("front", [r"-m_2 l_1 l_2 s_2(\dot q_1+\dot q_2) = ", ""])
+def test_another_entry_of_c_is_no_cosine(front) -> None:
+    """It was read as cos(2*q1), and a right formula called wrong."""
+    with pytest.raises(ExpressionError, match="an entry of the matrix C"):
+        kl.diagnose("planar2r", "C12", f"C_{{12}} = {front}C_{{11}} - C_{{21}}")
+
+
+@pytest.mark.parametrize(
+    ("entry", "text"),
+    [
+        ("J11", "J11 = -l1*sin(q1) - l2*sin(q1+q2) = -x"),
+        ("J11", "J11 = -l1*sin(q1) - l2*sin(q1+q2) = ∂x/∂q2"),
+        ("J11", "x = l1*cos(q1) + l2*cos(q1+q2)\nJ11 = -l1*sin(q1) - l2*sin(q1+q2) = y"),
+        ("M22", "M22 = m2*l2^2 N m"),
+        ("x", r"$x = l_1 c_1 + l_2 c_{12}\,\mathrm{kg}$"),
+    ],
+)
+def test_an_end_that_is_not_so_does_not_agree(entry, text) -> None:
+    with pytest.raises(ExpressionError):
+        kl.diagnose("planar2r", entry, text)
+
+
+@pytest.mark.parametrize("end", ["l_1l_1s_2", "l_1 l_2 s_1"])
+def test_a_product_of_names_at_the_end_is_judged(end) -> None:
+    text = r"\det(J) = l_1 l_2 (s_{12}c_1 - c_{12}s_1)"
+    assert kl.diagnose("planar2r", "det", f"{text} = l_1l_2s_2").agrees
+    assert kl.diagnose("planar2r", "det", f"{text} = {end}").causes
+
+
+def test_an_equation_that_is_not_used_is_named() -> None:
+    text = (
+        "y2 = l1*sin(q1) + l2*sin(q1+q2)\nV = m1*g*l1*sin(q1) + m2*g*(l1*sin(q1) + l2*sin(q1+q2))"
+    )
+    assert any("y2" in remark for remark in kl.diagnose("planar2r", "V", text).remarks)
