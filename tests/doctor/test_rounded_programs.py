@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hand_programs import written
 
 import kinlab as kl
 
@@ -192,3 +193,22 @@ def test_another_c_is_rounded_row_by_row() -> None:
     assert found.remarks[0] == "C*qd is right, but C is not Christoffel's"
     off = kl.diagnose("planar3r", "C", f"[{', '.join(rows)}]".replace("0.8*", "0.82*"), samples=40)
     assert not off.agrees
+
+
+def test_a_number_that_the_robot_has_stands_for_no_other() -> None:
+    """0.16 is the distance of the scara's centre from the far end, and no 0.165 that is rounded."""
+    text = """
+import numpy as np
+
+def f(q):
+    e = 0.01*np.exp(1j*(q[0] + q[1] - q[3]))
+    hand = 0.275*np.exp(1j*(q[0] + q[1])) + e
+    second = (0.145 - 0.005j)*np.exp(1j*(q[0] + q[1]))
+    elbow = 0.325*np.exp(1j*q[0])
+    moved = [0.165*np.exp(1j*q[0]), elbow + second, elbow + hand - e, elbow + hand]
+    height = [0.407, 0.417, 0.437 - q[2], 0.397 - q[2]]
+    return np.array([[z.real, z.imag, h] for z, h in zip(moved, height)])
+"""
+    right = kl.diagnose("scara", "com_positions", written(text))
+    wrong = kl.diagnose("scara", "com_positions", written(text.replace("0.165", "0.16")))
+    assert right.agrees and not wrong.agrees, (str(right), str(wrong))

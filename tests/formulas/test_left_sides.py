@@ -286,3 +286,9 @@ def test_an_equation_that_is_not_used_is_named() -> None:
         "y2 = l1*sin(q1) + l2*sin(q1+q2)\nV = m1*g*l1*sin(q1) + m2*g*(l1*sin(q1) + l2*sin(q1+q2))"
     )
     assert any("y2" in remark for remark in kl.diagnose("planar2r", "V", text).remarks)
+
+
+@pytest.mark.parametrize("number", ["", " (1)", " (3a)"])
+def test_a_number_of_an_equation_behind_a_unit_is_no_factor(number) -> None:
+    text = f"y = l1*sin(theta1) = 0.6 sin(theta1) m{number}"
+    assert kl.diagnose("single_link", "y", text).agrees

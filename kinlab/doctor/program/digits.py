@@ -32,6 +32,8 @@ _COMPILING = 30
 """What compiling one node amounts to."""
 _FEWEST = 3
 """Digits from which on a number may be another one rounded, though others make up for it."""
+_OF_THE_ROBOT = 2
+"""Digits from which on a number that the robot has is that one: 0.16 beside 0.165."""
 _CUT = 4
 """Digits from which on a number may end where the next digit would."""
 _MOST = 7
@@ -241,7 +243,7 @@ def _written(search: LineSearch) -> Iterator[tuple[NumberPlace, Literal]]:
 
 def _is_exact(one: Literal, own: Array) -> bool:
     """Whether a number is the robot's, with so many digits that it stands for no other."""
-    return one.digits >= _FEWEST and bool(
+    return one.digits >= _OF_THE_ROBOT and bool(
         np.isclose(own, one.value, rtol=TOLERANCES.same_number, atol=0.0).any()
     )
 

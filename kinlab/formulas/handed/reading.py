@@ -136,6 +136,10 @@ _UNIT = re.compile(
     r"\s{0,9}\.?\s*$"
 )
 """An SI unit in brackets behind a formula's dollars."""
+_NUMBERED = re.compile(
+    r"(?P<unit>[\w)}\]]\s(?:N\s?m|kg\s?m(?:\^2|²)|[mJN]|rad))\s{1,9}\(\d{1,2}[a-z]?\)\s*$"
+)
+"""The number of an equation behind a unit: ``0.6 sin(q1) m (1)``."""
 _IN_WORDS = re.compile(r"\\text\s*\{\s*([()\[\]])\s*\}")
 """A bracket that is set as words are: ``\\text{(}d_3 = q_3)``."""
 _SPACED = r"(?:\\q?quad|\\[,;: ]|\s){0,4}"
@@ -200,7 +204,7 @@ def as_formula(
     text = _BOLD.sub(lambda found: found[1] or f"{found[2]}:", text)
     text = _GREEK_ANGLE.sub(r"\1(\2)", text) if "\\" not in text else text
     text = _ACCENTED.sub(lambda letter: unicodedata.normalize("NFC", letter[0]), text)
-    text = _UNIT.sub("", _FULL_STOP.sub("", text))
+    text = _NUMBERED.sub(r"\g<unit>", _UNIT.sub("", _FULL_STOP.sub("", text)))
     text = _FOLLOWS.sub("\n", _IN_WORDS.sub(r"\1", _ELLIPSIS.sub(".", text)))
     text = for_each_joint(_in_english(with_units_inside(_STAR_SAID.sub("", text))))
     text = _ABBREVIATED.sub(_where, text)
