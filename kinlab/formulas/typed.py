@@ -928,6 +928,21 @@ def is_name_of(name: str, entry: str) -> bool:
     return False
 
 
+def is_sister(name: str, entry: str) -> bool:
+    """Whether a name is that of another entry of the same quantity: g1 beside g2.
+
+    Args:
+        name: as typed.
+        entry: what the formula is asked for.
+    """
+    with suppress(ExpressionError):
+        head, places = _head_and_places(entry_name(name))
+        mine, wanted = _head_and_places(entry_name(entry))
+        alike = head == mine or any({head, mine} <= group for group in _MEANT)
+        return alike and len(places) == len(wanted) and places != wanted
+    return False
+
+
 def _also(name: str, entry: str) -> bool:
     """Whether a name may stand in a chain of an entry: M21 beside M12, a name of one's own."""
     with suppress(ExpressionError):

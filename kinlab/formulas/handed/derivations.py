@@ -14,7 +14,13 @@ from dataclasses import dataclass
 
 from kinlab.formulas.handed.sentences import is_word
 from kinlab.formulas.handed.vocabulary import CHINESE, LATIN
-from kinlab.formulas.typed import begins_with, is_name_of, own_name, says_what_it_is
+from kinlab.formulas.typed import (
+    begins_with,
+    is_name_of,
+    is_sister,
+    own_name,
+    says_what_it_is,
+)
 
 _PROGRAM = re.compile(r"\bdef\b|\blambda\b|\breturn\b|\[\[")
 _GRID = re.compile(r"\\begin\{(\w*(?:matrix|array|cases)\*?)\}.{0,2000}?\\end\{\1\}", re.DOTALL)
@@ -45,6 +51,7 @@ _END = re.compile(
 _SQUARE = re.compile(r"(?:\^\{?2\}?|²|\*\*2)$")
 _NUMBER = re.compile(r"[\d₀-₉]")
 _OF_LETTERS = re.compile(r"[^\W\d_]{1,8}_?\{?\d.*[^\W\d_]|[*/^+]|\\frac|sin|cos")
+_SIGNS = re.compile(r"[_{}\\\s]")
 _STEPS, _LONGEST = 6, 8000
 _BLANKS = re.compile(r"(?<!\s)\s*\n\s*")
 
@@ -98,7 +105,7 @@ def conclusion(text: str, entry: str, last: bool = False) -> str:
 
 
 def steps_beside(text: str, entry: str) -> list[str]:
-    """The names, as typed, to which other equations than the entry's give more than a number.
+    """The names, as typed, to which other equations give more than a number, and that none uses.
 
     Args:
         text: as typed.
@@ -107,9 +114,25 @@ def steps_beside(text: str, entry: str) -> list[str]:
     if text.count("=") < 2 or len(text) > _LONGEST or _PROGRAM.search(text):
         return []
     with suppress(_UnsureError):
-        found = (one for one in _all(text) if _OF_LETTERS.search(one.right))
-        return [one.name for one in found if not is_name_of(one.name, entry)]
+        found = _all(text)
+        rights = [_plain(one.right) for one in found]
+        return [
+            one.name
+            for one in found
+            if _OF_LETTERS.search(one.right)
+            and not any(_stands_in(one.name, right) for right in rights)
+            and not is_name_of(one.name, entry)
+            and not is_sister(one.name, entry)
+        ]
     return []
+
+
+def _plain(text: str) -> str:
+    return _SIGNS.sub("", text)
+
+
+def _stands_in(name: str, plain: str) -> bool:
+    return bool(re.search(rf"(?<![A-Za-z]){re.escape(_plain(name))}(?!\d)", plain))
 
 
 def _all(text: str) -> list[_Equation]:
@@ -164,11 +187,9 @@ def _explaining(chain: str, others: dict[str, _Equation]) -> list[_Equation]:
     kept: dict[str, _Equation] = {}
     waiting = [chain.partition("=")[2]]
     while waiting:
-        plain = re.sub(r"[_{}\\\s]", "", waiting.pop())
+        plain = _plain(waiting.pop())
         for name, one in others.items():
-            written = re.sub(r"[_{}\\\s]", "", one.name)
-            used = re.search(rf"(?<![A-Za-z]){re.escape(written)}(?!\d)", plain)
-            if used and name not in kept:
+            if _stands_in(one.name, plain) and name not in kept:
                 kept[name] = one
                 waiting.append(one.right)
     return [*reversed(kept.values())]
