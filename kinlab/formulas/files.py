@@ -243,7 +243,7 @@ def _formula_file(
                 "tool beyond it"
             ).format(number=last.number)
             remarks[key] = "; ".join(filter(None, (remarks.get(key), said)))
-        used = _SIGNS.sub("", " ".join([*own.values(), entries[key]]))
+        used = typed.joined_up(" ".join([*own.values(), entries[key]]))
         for name, formula in own.items():
             unused = name not in used or name[0] == "L"
             if unused and not _readable(formula):
@@ -308,13 +308,10 @@ def _of_gravity(text: str, key: str) -> str:
     return f"{dollars}{right.strip(' $&')}{dollars}" if same else text
 
 
-_SIGNS = re.compile(r"[_{}\\\s]")
-
-
 def _bare_name(name: str) -> str:
     with suppress(ExpressionError):
         name = typed.own_name(name)
-    return _SIGNS.sub("", name)
+    return typed.joined_up(name)
 
 
 def _used(file: FormulaFile) -> set[str]:

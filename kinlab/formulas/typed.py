@@ -616,7 +616,7 @@ def explains_another(line: str, lines: list[str]) -> bool:
         line: an equation.
         lines: all there are.
     """
-    name = _joined_up(line.partition("=")[0])
+    name = joined_up(line.partition("=")[0])
     pattern = re.compile(rf"(?<![A-Za-z]){re.escape(name)}(?![\d₀-₉])")
     return any(map(pattern.search, _rights(tuple(lines))))
 
@@ -625,14 +625,18 @@ def explains_another(line: str, lines: list[str]) -> bool:
 def _rights(lines: tuple[str, ...]) -> list[str]:
     """The right sides of lines, joined up, with their commands and as names alone."""
     rights = [line.partition("=")[2] for line in lines]
-    return [*map(_joined_up, rights), *(_joined_up(_COMMAND.sub(" +", right)) for right in rights)]
+    return [*map(joined_up, rights), *(joined_up(_COMMAND.sub(" +", right)) for right in rights)]
 
 
 _COMMAND = re.compile(r"\\(?:(?:begin|end)\{\w+\*?\}|(?=[A-Za-z]))")
 
 
-def _joined_up(text: str) -> str:
-    """A text without blanks, braces and what stands below the line."""
+def joined_up(text: str) -> str:
+    """A text without blanks, braces and signs of what stands below the line.
+
+    Args:
+        text: as typed.
+    """
     return re.sub(r"[_{}\\\s]", "", text)
 
 
@@ -708,7 +712,7 @@ def as_column(text: str, entry: str) -> str:
     own = []
     for line in lines:
         left, sign, right = line.partition("=")
-        name = _PLANAR.get(_joined_up(left.strip("&$ ")).lower())
+        name = _PLANAR.get(joined_up(left.strip("&$ ")).lower())
         if not sign or "=" in right or name in given:
             return text
         if name is None:
@@ -736,7 +740,7 @@ _PLANAR |= {f"{wave}({angle})": wave[0] for wave in ("cos", "sin") for angle in 
 
 def is_angle(left: str) -> bool:
     """Whether a left side is the angle of a planar arm's tool."""
-    return _PLANAR.get(_joined_up(left.strip("&$ ")).lower()) == "p"
+    return _PLANAR.get(joined_up(left.strip("&$ ")).lower()) == "p"
 
 
 def _rows(lines: list[str], entry: str, writing: Hand) -> dict[str, str]:
@@ -881,7 +885,7 @@ def _is_formula_of(text: str, entry: str) -> bool:
     if _PRODUCT.fullmatch(text.strip("& .")):
         return True
     (head, places), (mine, asked) = map(_head_and_places, map(entry_name, (text, entry)))
-    meant = head == mine or any({head, mine} <= group for group in _MEANT)
+    meant = _of_one_quantity(head, mine)
     if places and asked and len(places) != len(asked) and (meant or "(" in text):
         return True
     return "(" in text and head != mine and not (meant and bool(places) == bool(asked))
@@ -909,8 +913,7 @@ def _may_end(name: str, entry: str) -> bool:
     plain = entry_name(name)
     (head, places), (mine, _wanted) = map(_head_and_places, (plain, entry_name(entry)))
     across = [plain, f"{head}{places[::-1]}"] if head in _SYMMETRIC else [plain]
-    known = head == mine or any({head, mine} <= group for group in _MEANT)
-    others = known and any(of_one_name(one, entry) for one in across)
+    others = _of_one_quantity(head, mine) and any(of_one_name(one, entry) for one in across)
     point = plain.replace("_", "") in _POINT and plain[-1] == entry
     point |= plain == "x" and _heads("J21", entry, None) == (("j", "21"), ("j", "21"))
     return begins_with(f"{name} =", entry) or others or point
@@ -938,9 +941,13 @@ def is_sister(name: str, entry: str) -> bool:
     with suppress(ExpressionError):
         head, places = _head_and_places(entry_name(name))
         mine, wanted = _head_and_places(entry_name(entry))
-        alike = head == mine or any({head, mine} <= group for group in _MEANT)
+        alike = _of_one_quantity(head, mine)
         return alike and len(places) == len(wanted) and places != wanted
     return False
+
+
+def _of_one_quantity(head: str, mine: str) -> bool:
+    return head == mine or any({head, mine} <= group for group in _MEANT)
 
 
 def _also(name: str, entry: str) -> bool:

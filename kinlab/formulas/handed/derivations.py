@@ -18,6 +18,7 @@ from kinlab.formulas.typed import (
     begins_with,
     is_name_of,
     is_sister,
+    joined_up,
     own_name,
     says_what_it_is,
 )
@@ -51,7 +52,6 @@ _END = re.compile(
 _SQUARE = re.compile(r"(?:\^\{?2\}?|²|\*\*2)$")
 _NUMBER = re.compile(r"[\d₀-₉]")
 _OF_LETTERS = re.compile(r"[^\W\d_]{1,8}_?\{?\d.*[^\W\d_]|[*/^+]|\\frac|sin|cos")
-_SIGNS = re.compile(r"[_{}\\\s]")
 _STEPS, _LONGEST = 6, 8000
 _BLANKS = re.compile(r"(?<!\s)\s*\n\s*")
 
@@ -115,7 +115,7 @@ def steps_beside(text: str, entry: str) -> list[str]:
         return []
     with suppress(_UnsureError):
         found = _all(text)
-        rights = [_plain(one.right) for one in found]
+        rights = [joined_up(one.right) for one in found]
         return [
             one.name
             for one in found
@@ -127,12 +127,8 @@ def steps_beside(text: str, entry: str) -> list[str]:
     return []
 
 
-def _plain(text: str) -> str:
-    return _SIGNS.sub("", text)
-
-
 def _stands_in(name: str, plain: str) -> bool:
-    return bool(re.search(rf"(?<![A-Za-z]){re.escape(_plain(name))}(?!\d)", plain))
+    return bool(re.search(rf"(?<![A-Za-z]){re.escape(joined_up(name))}(?!\d)", plain))
 
 
 def _all(text: str) -> list[_Equation]:
@@ -187,7 +183,7 @@ def _explaining(chain: str, others: dict[str, _Equation]) -> list[_Equation]:
     kept: dict[str, _Equation] = {}
     waiting = [chain.partition("=")[2]]
     while waiting:
-        plain = _plain(waiting.pop())
+        plain = joined_up(waiting.pop())
         for name, one in others.items():
             if _stands_in(one.name, plain) and name not in kept:
                 kept[name] = one

@@ -246,9 +246,8 @@ def own_sentence(text: str, entry: str) -> int:
 
 
 _LEFT_SIDE = re.compile(
-    r"(?:^|(?<=[\s$&:：,，;；{CHINESE}]))(?P<name>\\?[A-Za-zα-ωΑ-Ω][^\s=+*/^-]{0,24})\s?&?\s?:?=(?!=)".replace(
-        "{CHINESE}", CHINESE
-    )
+    rf"(?:^|(?<=[\s$&:：,，;；{CHINESE}]))"
+    r"(?P<name>\\?[A-Za-zα-ωΑ-Ω][^\s=+*/^-]{0,24})\s?&?\s?:?=(?!=)"
 )
 _DOES_NOT = re.compile(
     r"\b(?:does|do)(?:\s+not|n['’]t)\s+(?:depend|contain|appear|matter|enter|vary|occur|contribute"
