@@ -25,7 +25,8 @@ module          what it holds
                 Unicode, matrices
 ``typeset``     Formulas as LaTeX and MathML: the records' own LaTeX, and trees in the order of
                 the writer
-``handed/``     Formulas as they are handed in: words, code and units around them
+``handed/``     Formulas as they are handed in: code, units, a word processor's letters
+``language/``   The words around a formula: read, passed over, or a doubt
 ``signs/``      The signs that formulas are typed with, made plain: LaTeX, products without a
                 sign, remarks
 ==============  ==================================================================================

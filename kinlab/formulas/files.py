@@ -30,14 +30,14 @@ from typing import Any
 
 from kinlab.errors import ExpressionError, FileError
 from kinlab.formulas import grids, tree, typed
-from kinlab.formulas.handed.clauses import Claim, Holds
 from kinlab.formulas.handed.columns import with_matrices
-from kinlab.formulas.handed.derivations import conclusion, steps_beside
 from kinlab.formulas.handed.equations import solved
-from kinlab.formulas.handed.prose import Doubt, doubtful, left_over
 from kinlab.formulas.handed.rates import MOVING
 from kinlab.formulas.handed.reading import as_formula
-from kinlab.formulas.handed.words import refuse_meanings_of_steps
+from kinlab.formulas.language.clauses import Claim, Holds
+from kinlab.formulas.language.derivations import conclusion, steps_beside
+from kinlab.formulas.language.prose import Doubt, doubtful, left_over
+from kinlab.formulas.language.words import refuse_meanings_of_steps
 from kinlab.formulas.signs.latex import LAMBDA
 from kinlab.formulas.signs.letters import WIDE
 from kinlab.formulas.signs.named import (

@@ -9,7 +9,7 @@ import kinlab as kl
 from kinlab.doctor.file import examine_file
 from kinlab.doctor.glossary.facts import holding
 from kinlab.errors import ExpressionError
-from kinlab.formulas.handed.clauses import without_clauses
+from kinlab.formulas.language.clauses import without_clauses
 
 ARMS = ("single_link", "planar2r", "planar2r_rods", "planar3r", "spatial3r", "scara", "stanford")
 G2 = "g2 = m2*g*l2*cos(q1+q2)"

@@ -17,7 +17,7 @@ from kinlab.check.quantities.special import jacobian_determinant
 from kinlab.doctor.changes import Mechanism, table_of
 from kinlab.errors import KinlabError
 from kinlab.fivebar import FiveBar
-from kinlab.formulas.handed.clauses import Claim, Holds, arms_named
+from kinlab.formulas.language.clauses import Claim, Holds, arms_named
 from kinlab.model.dh import DHTable
 from kinlab.model.link import FRICTION, Convention
 from kinlab.model.robot import Robot

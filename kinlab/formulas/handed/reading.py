@@ -5,15 +5,15 @@ from __future__ import annotations
 import re
 import unicodedata
 
-from kinlab.formulas.handed.clauses import Holds, without_clauses
 from kinlab.formulas.handed.code import with_definitions, without_code, without_prompts
 from kinlab.formulas.handed.columns import of_column
 from kinlab.formulas.handed.constants import without_constant
 from kinlab.formulas.handed.letters import plain_letters, siciliano_s_letters, without_marks
-from kinlab.formulas.handed.prose import doubtful
 from kinlab.formulas.handed.rates import MOVING, plain_rates
 from kinlab.formulas.handed.units import with_units_inside, without_units
-from kinlab.formulas.handed.words import (
+from kinlab.formulas.language.clauses import Holds, without_clauses
+from kinlab.formulas.language.prose import doubtful
+from kinlab.formulas.language.words import (
     refuse_comments,
     without_remark_behind,
     without_words,
@@ -187,7 +187,7 @@ def as_formula(
     Returns:
         The formula, nothing changed in it where nothing is around it; what is to be said of how it
         was read, or nothing; and the words left out that may change what it claims, as
-        :func:`kinlab.formulas.handed.prose.doubtful` has them.
+        :func:`kinlab.formulas.language.prose.doubtful` has them.
 
     Raises:
         ExpressionError: what can be read in two ways, or a clause that is not so.

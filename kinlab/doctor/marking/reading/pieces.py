@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from kinlab.formulas.handed.vocabulary import is_program
+from kinlab.formulas.language.vocabulary import is_program
 
 _NOTHING = (
     r"(?:i\s*(?:do\s*not|don'?t|don’t)\s*know(?:\s*(?:it|this|how|that))?|i\s*have\s*no\s*idea|no\s*idea|idk|n\.?\s?/?\s?a\.?"

@@ -17,7 +17,7 @@ from kinlab.doctor.marking.reading.pieces import Piece, is_no_answer
 from kinlab.doctor.marking.sheet import Question, Sheet
 from kinlab.doctor.text.claims import claimed_of, whole_claimed
 from kinlab.errors import ExpressionError, KinlabError
-from kinlab.formulas.handed.sentences import without_sentences
+from kinlab.formulas.language.sentences import without_sentences
 from kinlab.formulas.typed import (
     Hand,
     claims,

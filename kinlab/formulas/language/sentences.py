@@ -1,6 +1,6 @@
 """The equations in a text with sentences: ``Differentiating x by q2 we get J12 = ...``.
 
-What words are is told by the lists of :mod:`kinlab.formulas.handed.vocabulary`, and by their
+What words are is told by the lists of :mod:`kinlab.formulas.language.vocabulary`, and by their
 length; they are taken out, and of what is left the equation of the entry is kept, with those that
 explain its names.
 """
@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import re
 
-from kinlab.formulas.handed.prose import MATHS, is_condition
-from kinlab.formulas.handed.vocabulary import CHINESE, LATIN, is_listed, is_program
+from kinlab.formulas.language.prose import MATHS, is_condition
+from kinlab.formulas.language.vocabulary import CHINESE, LATIN, is_listed, is_program
 from kinlab.formulas.signs.brackets import parts_at
 from kinlab.formulas.typed import (
     begins_with,

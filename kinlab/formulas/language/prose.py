@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
-from kinlab.formulas.handed.vocabulary import (
+from kinlab.formulas.language.vocabulary import (
     BEHIND,
     CHINESE,
     LATIN,

@@ -1,7 +1,7 @@
 """Words around a formula: ``末端的 x 坐标为 $x = ...$``, ``where q1 is the angle of joint 1``.
 
 What may change a name's meaning, or denies the formula, is refused. All other words are left out,
-and :mod:`kinlab.formulas.handed.prose` tells which of them may mean something all the same.
+and :mod:`kinlab.formulas.language.prose` tells which of them may mean something all the same.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 
 from kinlab.errors import ExpressionError
-from kinlab.formulas.handed.prose import (
+from kinlab.formulas.language.prose import (
     around,
     condition_in_front,
     explained_by,
@@ -21,8 +21,8 @@ from kinlab.formulas.handed.prose import (
     outside_formulas,
     own_sentence,
 )
-from kinlab.formulas.handed.sentences import without_sentences
-from kinlab.formulas.handed.vocabulary import is_program
+from kinlab.formulas.language.sentences import without_sentences
+from kinlab.formulas.language.vocabulary import is_program
 from kinlab.formulas.signs.refusals import refused
 from kinlab.formulas.typed import begins_with, entry_name, of_one_name
 from kinlab.host.language import N_

@@ -2,7 +2,7 @@
 
 ``T = ..., V = ...; d/dt(dT/dqd1) = ...; hence tau1 = ... = ...``: for a text that cannot be read as
 it is. All else in it is left out; which of its words may mean something is told by
-:mod:`kinlab.formulas.handed.prose`, as beside any formula.
+:mod:`kinlab.formulas.language.prose`, as beside any formula.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 
-from kinlab.formulas.handed.sentences import is_word
-from kinlab.formulas.handed.vocabulary import CHINESE, LATIN
+from kinlab.formulas.language.sentences import is_word
+from kinlab.formulas.language.vocabulary import CHINESE, LATIN
 from kinlab.formulas.typed import (
     begins_with,
     is_name_of,

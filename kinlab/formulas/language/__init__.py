@@ -1,0 +1,13 @@
+"""The words around a formula: which of them are read, passed over, or may change what it claims.
+
+===============  ==================================================================================
+module           what it holds
+===============  ==================================================================================
+``clauses``      Clauses that say what may be true of an arm: ``gravity acts along -y``
+``derivations``  What a derivation of several steps comes to: the entry's equations, and their names
+``prose``        Which words beside a formula may change what it claims
+``sentences``    The equations in a text with sentences
+``vocabulary``   Words that say nothing of what a formula claims
+``words``        Words around a formula
+===============  ==================================================================================
+"""
