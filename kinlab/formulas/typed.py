@@ -842,6 +842,7 @@ def readings(text: str, entry: str) -> list[str]:
     strange = any(name != left and not _also(name, entry) for name in names)
     says = named[-1] or says_what_it_is(parts[-1])
     strange |= len(parts) > 2 and says and not _may_end(parts[-1], entry)
+    strange |= named[-1] and _is_of_fewer_joints(parts[-1], "=".join(formulas))
     several = any(
         len(parts_at(formula, ",;")) > 1 or _is_of_two_lines(formula) for formula in parts
     )
@@ -917,6 +918,19 @@ def _may_end(name: str, entry: str) -> bool:
     point = plain.replace("_", "") in _POINT and plain[-1] == entry
     point |= plain == "x" and _heads("J21", entry, None) == (("j", "21"), ("j", "21"))
     return begins_with(f"{name} =", entry) or others or point
+
+
+def _is_of_fewer_joints(name: str, formula: str) -> bool:
+    """Whether a name with states in parentheses lacks one that stands in the formula: M12(q1)."""
+    _head, _, states = name.partition("(")
+    stated = set("".join(_JOINTS.findall(states)))
+    return bool(stated) and not stated >= set("".join(_JOINTS.findall(formula)))
+
+
+_JOINTS = re.compile(
+    r"(?<![A-Za-z])(?:\\?(?:var)?theta|\\?q|\\?(?:sin|cos)|th(?:eta)?|[qcsθϑΘSC])[ ]?_?\{?(\d+)"
+)
+"""The joints in a name of an angle, or of its sine: ``q2``, ``\\theta_{2}``, ``c12``."""
 
 
 def is_name_of(name: str, entry: str) -> bool:

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from itertools import permutations, product
 from math import pi
 
+import numpy as np
+
+from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import called, copied, factors, names, nodes, text_of
 from kinlab.doctor.program.edits import chains
 from kinlab.doctor.program.edits.scope.forms import Turned, statement_of, stem_of, summands
@@ -99,6 +103,18 @@ _HALF_SQUARED = 1.09
 """Cost of half a length in a square, where it stands whole."""
 
 
+_TENSOR, _SECOND_MOMENTS = (3, 3), 1.03
+"""Shape of a tensor of inertia, and what it is to take it for the second moments."""
+_QUARTERS = [
+    [[0 if k != at else sign for k in range(3)] for at, sign in zip(order, signs, strict=True)]
+    for order in permutations(range(3))
+    for signs in product((1, -1), repeat=3)
+    if (order != (0, 1, 2) or -1 in signs)
+    and round(np.linalg.det(np.eye(3)[[*order]]) * np.prod(signs)) == 1
+]
+"""The rotations that take axes to axes."""
+_TURNED = 1.13
+"""What it is to take none of them for such a one."""
 _POSE, _INVERTED = (4, 4), 1.06
 """Shape of a pose, and the cost of its inverse for it."""
 
@@ -334,6 +350,27 @@ def _inverted(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
         yield here.instead(call, "inverse", _INVERTED + _GIVEN * (not given))
 
 
+def _of_tensors(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """The second moments of a tensor of inertia, ``tr(I)/2 - I``; a quarter turn for none."""
+    node, seen = here.node, scope.observed.of(here.node)
+    if isinstance(node, ast.Call) and called(node) == "eye" and isinstance(here.parent, ast.Assign):
+        for rows in _QUARTERS:
+            turned = ast.parse(f"np.array({rows})", mode="eval").body
+            yield here.instead(turned, "missing matrix", _TURNED)
+    elif isinstance(node, ast.Name | ast.Subscript) and any(
+        map(_may_be_a_tensor, seen.values if seen is not None else ())
+    ):
+        half = ast.parse(f"np.trace({text_of(node)})/2*np.eye(3)", mode="eval").body
+        yield here.instead(ast.BinOp(half, ast.Sub(), node), "missing term", _SECOND_MOMENTS)
+
+
+def _may_be_a_tensor(value: Array) -> bool:
+    """Whether it is symmetric, with positive numbers on its diagonal, and no unit matrix."""
+    diagonal = np.diagonal(value)
+    same = np.allclose(diagonal, diagonal[0])
+    return bool(np.allclose(value, value.T) and (diagonal > 0).all()) and not bool(same)
+
+
 def _matrices(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     node = here.node
     transposed = isinstance(node, ast.Attribute) and node.attr == "T"
@@ -346,6 +383,8 @@ def _matrices(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         yield here.instead(ast.Attribute(node, "T", ast.Load()), "transposed", cost)
     if shape == _POSE and not isinstance(here.parent, ast.Subscript) and scope.is_pose(node):
         yield from _inverted(here, scope)
+    if shape == _TENSOR and scope.has_numpy:
+        yield from _of_tensors(here, scope)
     if isinstance(here.parent, ast.Subscript) and here.field == "value" and len(shape) > 2:
         return
     if isinstance(here.parent, ast.Return) and shape[0] == _TWIST and isinstance(node, ast.Name):

@@ -88,6 +88,8 @@ _NUMBERED = 1.08
 """Cost of another joint's number in a test for one: ``i == 2`` for ``i == 3``."""
 _FILLED = 1.04
 """Cost of another array that is filled, too."""
+_ONE_OF_ALL = 1.08
+"""Cost of the entry that is counted for all of them, where a number is put."""
 _ALL_BEFORE = 1.14
 """Cost of all entries up to the one that a value is put into."""
 _MISCALLED = 0.06
@@ -591,3 +593,7 @@ def _target(
             if isinstance(key, ast.Name):  # the entries of all joints before it, too
                 before = ast.Slice(None, plus(key, 1), None)
                 yield here.within(holder, field, before, "index", _ALL_BEFORE)
+        elif ast.unparse(key) == ":" and observed.shape(here.node.value) == ():
+            for other_name in sorted(scope.counting - {*names(target)}):
+                other_key = ast.Name(other_name, ast.Load())
+                yield here.within(holder, field, other_key, "index", _ONE_OF_ALL)

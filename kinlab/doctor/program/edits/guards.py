@@ -21,7 +21,8 @@ _CHOSEN = 1.1
 """The same of a force or a moment, as the joint moves."""
 _CHOICE = 3
 """Arguments of ``np.where``."""
-_VECTOR = (3,)
+_VECTOR, _KINDS = (3,), 2
+"""Shape of an axis; letters of a column that tells the kind of joint."""
 
 
 def masks(tree: ast.AST) -> dict[str, ast.expr]:
@@ -121,6 +122,22 @@ def _tests_here(scope: Scope, tests: dict[str, ast.expr]) -> list[ast.expr]:
     return [*(own | {ast.unparse(one): one for one in scope.tests_here()}).values()]
 
 
+def _tests_of_rows(here: Here, scope: Scope) -> Iterator[ast.expr]:
+    """Whether a row has a letter in a table of several: ``LINKS[j][0] == "P"``."""
+    used = names(here.above[0])
+    for name in dict.fromkeys(x for x in used if x in scope.space):
+        rows = scope.space[name]
+        if not isinstance(rows, list | tuple) or not all(isinstance(x, list | tuple) for x in rows):
+            continue
+        for k, cells in enumerate(zip(*rows, strict=False)):
+            letters = {*cells} if all(isinstance(one, str) for one in cells) else {""}
+            for counter in scope.counting if len(letters) == _KINDS else ():
+                at = ast.Name(counter, ast.Load())
+                row = ast.Subscript(ast.Name(name, ast.Load()), at, ast.Load())
+                cell = ast.Subscript(row, ast.Constant(k), ast.Load())
+                yield ast.Compare(cell, [ast.Eq()], [ast.Constant(min(letters))])
+
+
 def _of_a_slide(here: Here, scope: Scope, tests: dict[str, ast.expr]) -> Iterator[ProgramEdit]:
     """The force for a slide where the moment is for a hinge: ``z @ (f if slides[i] else n)``."""
     others = [one for text, one in scope.simple(_VECTOR) if text != ast.unparse(here.node)]
@@ -133,13 +150,15 @@ def _of_a_slide(here: Here, scope: Scope, tests: dict[str, ast.expr]) -> Iterato
 def _of_columns(here: Here, scope: Scope, tests: dict[str, ast.expr]) -> Iterator[ProgramEdit]:
     """A column of a Jacobian for a hinge or a slide alone: ``J[3:, i] = 0 if slides[i] else z``."""
     target = here.above[-1].targets[0] if isinstance(here.above[-1], ast.Assign) else None
-    if not isinstance(target, ast.Subscript) or isinstance(here.node, ast.IfExp):
+    crossed = isinstance(here.node, ast.Call) and called(here.node) == "cross"
+    if not (isinstance(target, ast.Subscript) or crossed) or isinstance(here.node, ast.IfExp):
         return
     own = ast.unparse(here.node)
     axes = [one for text, one in scope.simple(_VECTOR) if text != own and text in own]
     others = [ast.Constant(0), *(one for one in axes if isinstance(one, ast.Name))]
     decided = {ast.unparse(one.test) for one in here.above if isinstance(one, ast.If)}
-    for test in (one for one in _tests_here(scope, tests) if ast.unparse(one) not in decided):
+    every = [*_tests_here(scope, tests), *_tests_of_rows(here, scope)]
+    for test in (one for one in every if ast.unparse(one) not in decided):
         for other in others:
             for both in ((other, here.node), (here.node, other)):
                 yield here.instead(ast.IfExp(test, *both), "condition", _GUARDED)

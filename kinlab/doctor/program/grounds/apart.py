@@ -120,7 +120,7 @@ def arm_apart(
     reader = _Reader(
         table.n, cells, labels, found, negative, _summed(trial), names, unasked, rotors
     )
-    items = sorted(reader.items, key=lambda item: len(item.options))
+    items = sorted(map(reader.of_one, reader.items), key=lambda item: len(item.options))
     ways = [*islice(_ways(items, frozenset()), _WAYS + 1)]
     if not ways:
         return None
@@ -232,6 +232,7 @@ class _Reader:
         fitting: where numbers are that the arm has as they are called.
         noughts: where noughts are.
         odd: whether one is none of the arm's, while others of its kind are.
+        carried: the numbers that may be the arm's.
     """
 
     def __init__(
@@ -320,6 +321,7 @@ class _Reader:
             self.items.append(_Item((*kinds, *stays), once))
             unsure += own and len(kinds) > 1
         self.whole = self.whole and unsure < 2
+        self.carried = [one.value for one, _label, _may in given]
         held = np.array([one.value for one in found if one.alone])
         self.whole = self.whole and all(bool(_close(held, x).any()) for x in plain)
 
@@ -495,6 +497,28 @@ class _Reader:
         for k in some:
             self.tied.setdefault(self.cells[k].which, first.which)
         return left[:1]
+
+    def of_one(self, item: _Item) -> _Item:
+        """Of lengths and ways to centres that are one, for which there is but one number, one."""
+        first = next((option for option in item.options if option), ())
+        of = [k for option in item.options for one, k in option if one is first[0][0]]
+        some = [k for k in of if self.cells[k].kind == "length" or self._is_a_coordinate(k)]
+        whose = {self.tied.get(x, x) for x in (self.cells[k].which for k in some)}
+        others = [option for option in item.options if not option]  # it may be nothing of the arm's
+        if len(of) + len(others) < len(item.options) or len(whose) < 2 or len(first) > 1:
+            return item
+        if sum(bool(_close(np.array([first[0][0].value]), x).any()) for x in self.carried) > 1:
+            return item
+        for k in some[1:]:
+            self.tied.setdefault(self.cells[k].which, self.cells[some[0]].which)
+        left = [((first[0][0], k),) for k in of if k not in some[1:]]
+        return replace(item, options=(*left, *others))
+
+    def _is_a_coordinate(self, k: int) -> bool:
+        """Whether it is a centre's coordinate as it stands, and no sum with a length."""
+        cell = self.cells[k]
+        before = ((one.kind, one.which) for one in self.cells[:k])
+        return cell.kind == "centre" and (cell.kind, cell.which) not in before
 
     def _again(self, k: int, may: list[int]) -> bool:
         """Whether a moment of inertia is that of a cell before."""

@@ -615,7 +615,7 @@ def _alone(tree: ast.AST, made: set[str]) -> Iterator[ast.expr]:
     """
     for node in nodes(tree):
         waiting: list[Any] = [node.value] if isinstance(node, ast.Assign) else []
-        if isinstance(node, ast.For):  # rows that are typed where a loop goes through them
+        if isinstance(node, ast.For | ast.comprehension):  # rows that a loop goes through
             over = node.iter
             through = isinstance(over, ast.Call) and called(over) in _THROUGH
             waiting += over.args if isinstance(over, ast.Call) and through else [over]

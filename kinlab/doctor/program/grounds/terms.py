@@ -32,6 +32,8 @@ _CROSSED = 1.1
 """The same of a product of two vectors with such a name, of which no dimension is known."""
 _TRANSPORTED = 1.08
 """The same of a cross product with a rate about an axis, where the axis stands in the sum."""
+_CARRIED = 1.04
+"""The same of a moment about another point, where one of these stands in the sum."""
 _HIDDEN = 0.12
 """What that costs less where a unit vector for qdd hides the dimension of the sum."""
 _COPIED = 0.02
@@ -40,6 +42,8 @@ _NEXT = 0.98
 """What one is with which each of the arm's links has its own."""
 _OF_SEVERAL, _OF_IDLE, _FITTING = 1.0, 1.05, 1.08
 """The same of products of matrices: of several such names, of one; that fit a twist's entries."""
+_NEAR, _JUST_SET = 2, 1.05
+"""Lines above in which a matrix is set, and what one with a vector is far-fetched then."""
 _SET = ast.Assign | ast.AugAssign | ast.Return
 
 
@@ -104,11 +108,15 @@ def _of_dimension(
     seen = scope.observed.of(here.node)  # nothing but zeros has no dimension
     zeros = seen is not None and not any(map(np.any, seen.values))
     found: list[tuple[float, ast.expr]] = []
-    for term in _terms(scope, shape):
+    carried = {text_of(one): one for one in _carried(here.node, scope)}
+    for term in (*carried.values(), *_terms(scope, shape)):
         made, idle = known.of_made(term), scope.uses_idle(term)
         told = None if size is None or made is None else abs(made - size)
         transported = _is_transported(term, here)
         if (told is None and not idle and not transported) or text_of(term) in own:
+            continue
+        if told is not None and told <= TOLERANCES.tried_further and text_of(term) in carried:
+            found.append((_CARRIED, term))
             continue
         if told is None or told <= TOLERANCES.tried_further or transported:
             sure, crossed = told is not None or zeros, isinstance(term, ast.Call)
@@ -121,6 +129,21 @@ def _of_dimension(
     found.sort(key=lambda one: one[0])
     for cost, term in found[: _MOST if size is not None or zeros else _FEW]:
         yield here.instead(ast.BinOp(here.node, ast.Add(), term), "missing term", cost)
+
+
+def _carried(node: ast.expr, scope: Scope) -> Iterator[ast.expr]:
+    """``cross(p - pb, f)`` beside ``cross(c - pb, m*g)``: other vectors about the same point."""
+    for term in summands(node):
+        arm = term.args[0] if isinstance(term, ast.Call) and called(term) == "cross" else None
+        if not isinstance(arm, ast.BinOp) or not isinstance(arm.op, ast.Sub):
+            continue
+        kept = {text_of(arm.left), text_of(arm.right)}
+        vectors = [(text, one) for text, one in scope.simple(_VECTOR) if text not in kept]
+        for text, point in vectors[:_VECTORS]:
+            for other, vector in vectors[:_VECTORS]:
+                if other != text:
+                    away = ast.BinOp(point, ast.Sub(), arm.right)
+                    yield ast.Call(term.func, [away, vector], [])
 
 
 def _is_transported(term: ast.expr, here: Here) -> bool:
@@ -173,9 +196,16 @@ def _of_matrices(
             found.append((_OF_SEVERAL if several else _OF_IDLE, used, term))
         elif told and size is not None and _varies(size):
             found.append((_FITTING, used, term))
+        elif not told and len(shape) == 1 and 0 < line - scope.set_at.get(_front(term), 0) <= _NEAR:
+            found.append((_JUST_SET, used, term))
     found.sort(key=lambda one: one[:2])
     for cost, _used, term in found[:_FEW]:
         yield here.instead(ast.BinOp(here.node, ast.Add(), term), "missing term", cost)
+
+
+def _front(term: ast.expr) -> str:
+    """The name of the matrix in front of a product."""
+    return term.left.id if isinstance(term, ast.BinOp) and isinstance(term.left, ast.Name) else ""
 
 
 def _compared(size: Array, made: Array) -> bool:

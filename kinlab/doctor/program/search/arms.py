@@ -28,7 +28,13 @@ from kinlab.errors import KinlabError
 
 _ARMS = 600_000
 """What it amounts to to find other arms."""
-_KINEMATIC = ("fk", "jacobian", "planar_jacobian", "jacobian_tool", "jacobian_spatial", "statics")
+_KINEMATIC = (
+    *("fk", "planar_pose", "link_poses", "link_transforms", "dh_poses", "link_velocities"),
+    *("jacobian", "planar_jacobian", "jacobian_tool", "jacobian_spatial", "jacobian_dot"),
+    *("planar_determinant", "jacobian_determinant", "isotropy_conditions", "tip_speed_squared"),
+    *("statics", "statics_tool", "static_wrenches", "least_rates"),
+    *("newton_step", "gradient_step", "loss", "loss_gradient"),
+)
 """Quantities that no mass has a part in."""
 
 _MOVING = ("entries swapped", "rows swapped", "columns swapped", "reversed", "shifted")

@@ -11,7 +11,7 @@ from kinlab.doctor.bytecode.syntax import called, nodes
 from kinlab.doctor.program.edits.numbers.data import is_number, measured
 from kinlab.doctor.program.edits.scope.functions import PI
 from kinlab.doctor.program.edits.scope.part import Scope
-from kinlab.doctor.program.edits.single.whole import SIZES
+from kinlab.doctor.program.edits.single.whole import SIZES, value_of, whole_constant
 from kinlab.doctor.program.observed import Seen
 from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, number
 from kinlab.doctor.program.trial import FieldChange
@@ -26,6 +26,8 @@ _RODS = 1.02
 """Cost of all moments of a row about the other point."""
 _RATIO, _SQUARED = 5, 1.1
 """A whole number from which on it may be a ratio of gears, and cost of its square for it."""
+_ENTRIES, _OF_AN_ARGUMENT = 7, 1.1
+"""Entries of an argument, and cost of one that is not read for nothing."""
 _ROOTS, _OF_A_ROOT = (2, 3, 5), 1.1
 """Numbers that may be lost roots, and cost of one."""
 _OF_A_BRANCH, _KEYS = 1.1, 2
@@ -58,6 +60,34 @@ def _as_in_the_other_branch(here: Here, scope: Scope) -> Iterator[ast.expr]:
     for key in [x for x in keys if isinstance(x, ast.Constant)][:_KEYS]:
         for _text, node in scope.simple((3,)):
             yield ast.Subscript(node, key, ast.Load())
+
+
+def _unread_entries(here: Here, scope: Scope) -> Iterator[ast.expr]:
+    """The entries of an argument of which only others are read: ``wrench[5]`` for no moment."""
+    tree = here.above[0]
+    given = [one.arg for one in tree.args.args] if isinstance(tree, ast.FunctionDef) else []
+    for name in given:
+        sizes = scope.shapes.get(name) or ()
+        uses = [x for x in nodes(tree) if isinstance(x, ast.Name) and x.id == name]
+        read = [x for x in nodes(tree) if isinstance(x, ast.Subscript) and x.value in uses]
+        if len(sizes) != 1 or sizes[0] > _ENTRIES or len(read) != len(uses):
+            continue
+        left = {*range(sizes[0])}
+        for one in read:
+            left -= {*_constant_keys(one.slice, sizes[0])} or left
+        for k in sorted(left):
+            yield ast.Subscript(ast.Name(name, ast.Load()), ast.Constant(k), ast.Load())
+
+
+def _constant_keys(key: ast.expr, size: int) -> list[int]:
+    """The numbers of entries that a whole number, or a slice between such, stands for."""
+    parts = [key.lower, key.upper, key.step] if isinstance(key, ast.Slice) else [key]
+    if not all(one is None or whole_constant(one) for one in parts):
+        return []
+    told = [None if one is None else value_of(one) for one in parts]
+    if isinstance(key, ast.Slice):
+        return [*range(size)[slice(*told)]]
+    return [k % size for k in told if k is not None]
 
 
 def _in_radians(degrees: int, scope: Scope) -> ast.expr:
@@ -151,6 +181,9 @@ def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
     if value == 0 and isinstance(here.parent, ast.IfExp) and here.field in ("body", "orelse"):
         for other in _as_in_the_other_branch(here, scope):
             yield here.instead(other, "name", _OF_A_BRANCH)
+    if value == 0 and isinstance(here.parent, ast.Assign):
+        for other in _unread_entries(here, scope):
+            yield here.instead(other, "name", _OF_AN_ARGUMENT)
     if value == 1 and (angle := _angle_beside(here)) is not None:
         yield here.instead(angle, "name", _ANGLE_FOR_ONE)
     if value in _ROOTS and scope.has_numpy and isinstance(here.parent, ast.BinOp):

@@ -30,6 +30,8 @@ _SET_ANEW, _WITH_A_NAME = 1.06, 1.14
 """Cost of what a statement sets, for a part of something; of another vector with a name."""
 _OWN = 1.1
 """Cost of the entry of another list by the counter itself, for one more or one less."""
+_OF_BOTH = 1.12
+"""Cost of the larger, or smaller, of two counters for one: ``o[max(j, k)]``."""
 _BESIDE = 1.06
 """Cost of an index that another row has in the same line."""
 
@@ -86,6 +88,11 @@ def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
             for text, index in beside.items():
                 if text not in _near(key) and not is_of_three(here, text):
                     yield here.within(holder, field, copied(index), "index", 1.08)
+                both = [key, index]
+                if text != text_of(key) and all(isinstance(one, ast.Name) for one in both):
+                    for name in ("max", "min") if isinstance(node.ctx, ast.Load) else ():
+                        farther = ast.Call(ast.Name(name, ast.Load()), [*map(copied, both)], [])
+                        yield here.within(holder, field, farther, "index", _OF_BOTH)
     _holder, _field, key = keys[0]
     single = len(keys) == 1 and not isinstance(node.slice, ast.Tuple)
     if single and isinstance(key, ast.BinOp) and isinstance(node.ctx, ast.Load):
