@@ -79,6 +79,8 @@ _KEPT = 1.22
 """Cost of a factor of what an object only keeps."""
 _UNPACKED = 1.2
 """Cost of a sign of all that is given to several names at once."""
+_NAMED_FOR_THIS = 1.1
+"""Cost of a sign of an entry that has a name for this alone: it is lost where that is set."""
 _AS_SET = 1.05
 """Cost of a sign in a row of what was set before."""
 _DIVIDED = 1.07
@@ -188,6 +190,8 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
             cost = _UNPACKED
         if entry and (are_counted(getattr(parent, "elts", ())) or _is_alone(parent, node)):
             cost = _AS_SET
+        if entry and isinstance(node, ast.Name) and _is_for_this_alone(here, node.id):
+            cost = _NAMED_FOR_THIS
         yield here.instead(chains.opposite(node), "sign", cost)
     below = isinstance(op, ast.Div) and here.field == "right"
     own = scope.observed.of(node)
@@ -198,7 +202,8 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         counted = isinstance(_leftmost(node), ast.Constant)
         for value in (2, 0.5, *([_THRICE] * (isinstance(node, ast.Name) and not trig))):
             named = isinstance(node, ast.BinOp) and not isinstance(node.right, ast.Constant)
-            times = chains.part_of(node, 2) if value < 1 and named else None
+            times = chains.without_two(node) if value < 1 else None
+            times = times or (chains.part_of(node, 2) if value < 1 and named else None)
             times = times or chains.times(number(value), node)
             rare = trig or value == _THRICE
             cost = 1.15 if rare else 1.05 + _ODD * (passed or counted)
@@ -259,6 +264,12 @@ def _in_the_other_case(here: Here) -> Iterator[ast.expr]:
         for term in summands(other):
             if isinstance(term, ENTRIES):
                 yield term
+
+
+def _is_for_this_alone(here: Here, name: str) -> bool:
+    """Whether a name is set in the function, and used in this one place: ``[r21, r22, r23]``."""
+    every = [x for x in nodes(here.above[0]) if isinstance(x, ast.Name) and x.id == name]
+    return len(every) == 2 and any(isinstance(x.ctx, ast.Store) for x in every)
 
 
 def _is_a_factor(here: Here) -> bool:

@@ -97,6 +97,21 @@ def times(number: ast.expr, node: ast.expr) -> ast.BinOp:
     return more
 
 
+def without_two(node: ast.expr) -> ast.expr | None:
+    """A product without its factor 2: ``rate*grad`` of ``rate*2*grad``; None where it has none."""
+    first, factors = chain(node, (ast.Mult, ast.Div))
+    at = next(
+        (k for k, (op, x) in enumerate(factors) if isinstance(op, ast.Mult) and _is_two(x)), -1
+    )
+    if factors and at < 0 and _is_two(first) and isinstance(factors[0][0], ast.Mult):
+        return joined(factors[0][1], factors[1:])
+    return None if at < 0 else joined(first, [*factors[:at], *factors[at + 1 :]])
+
+
+def _is_two(node: ast.expr) -> bool:
+    return isinstance(node, ast.Constant) and node.value == 2
+
+
 def part_of(node: ast.expr, count: int) -> ast.BinOp | None:
     """A quotient by a whole number more: ``a/(2*b)`` of ``a/b``; None of what is none."""
     if not isinstance(node, ast.BinOp) or not isinstance(node.op, ast.Div):

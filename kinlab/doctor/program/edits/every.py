@@ -88,8 +88,10 @@ _NUMBERED = 1.08
 """Cost of another joint's number in a test for one: ``i == 2`` for ``i == 3``."""
 _FILLED = 1.04
 """Cost of another array that is filled, too."""
-_ONE_OF_ALL = 1.08
-"""Cost of the entry that is counted for all of them, where a number is put."""
+_SUMMED_UP = 1.03
+"""The same where a sum is worked out in a loop inside another: the inner one's counter."""
+_ENTRIES_OF_A_ROW, _ONE_OF_ALL = 7, 1.08
+"""Entries of a row to one of which something is added, and cost of one for all of them."""
 _ALL_BEFORE = 1.14
 """Cost of all entries up to the one that a value is put into."""
 _MISCALLED = 0.06
@@ -441,6 +443,8 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Program
         yield from along_its_own_axis(here, node.target, scope)
         yield from _target(here, node.target, scope, observed)
         yield from _for_all_joints(here, scope, observed)
+    if isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Name):
+        yield from _added_to_one(here, scope, observed)
     if isinstance(node, ast.Assign | ast.AugAssign | ast.Return | ast.Expr):
         yield from _counted(here, scope)
         yield from exchanges.of_statement(here, scope, observed)
@@ -565,6 +569,24 @@ def _filled_beside(here: Here, target: ast.Subscript, observed: Observed) -> lis
     return [x for x in dict.fromkeys(found) if x != getattr(target.value, "id", x)]
 
 
+def _innermost(here: Here) -> list[str]:
+    """What the innermost loop around a statement counts with."""
+    loops = [one for one in here.above if isinstance(one, ast.For)]
+    return names(loops[-1].target) if loops else []
+
+
+def _added_to_one(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
+    """A number that is added to all of a row, to one entry of it: ``n[2] += m`` for ``n += m``."""
+    name = here.node.target.id
+    sizes = scope.shapes.get(name) or ()
+    if len(sizes) != 1 or sizes[0] > _ENTRIES_OF_A_ROW or observed.shape(here.node.value) != ():
+        return
+    keys = [number(k) for k in range(sizes[0])]
+    for key in (*keys, *(ast.Name(x, ast.Load()) for x in _innermost(here))):
+        one = ast.Subscript(ast.Name(name, ast.Load()), key, ast.Store())
+        yield here.within(here.node, "target", one, "index", _ONE_OF_ALL)
+
+
 def _target(
     here: Here, target: ast.Subscript, scope: Scope, observed: Observed
 ) -> Iterator[ProgramEdit]:
@@ -589,7 +611,10 @@ def _target(
                 yield here.within(holder, field, plus(key, step), "index", 1.15)
             for other_name in sorted(scope.counting - {*names(key)}):
                 other_key = ast.Name(other_name, ast.Load())
-                yield here.within(holder, field, other_key, "index", _COUNTED)
+                summed = isinstance(here.node, ast.AugAssign) and other_name in _innermost(here)
+                yield here.within(
+                    holder, field, other_key, "index", _SUMMED_UP if summed else _COUNTED
+                )
             if isinstance(key, ast.Name):  # the entries of all joints before it, too
                 before = ast.Slice(None, plus(key, 1), None)
                 yield here.within(holder, field, before, "index", _ALL_BEFORE)
