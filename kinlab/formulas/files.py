@@ -230,6 +230,8 @@ def _formula_file(
             remarks[key] = "; ".join(filter(None, (remarks.get(key), taken)))
         own, entries[key] = with_matrices(own, entries[key], f"{place}: {key}")
         entries[key] = _of_gravity(entries[key], key)
+        if last is not None and last.number == 1:
+            entries[key] = _of_one_joint(entries[key], key)
         left = entries[key].partition("=")[0]
         other = [side for side in entries[key].split("=")[:-1] if is_another_slope(side, key)]
         of_angle = key.startswith("planar_pose[") and typed.is_angle(left)  # it has its cosine
@@ -306,6 +308,16 @@ def _of_gravity(text: str, key: str) -> str:
     same = found and found[1] in ("", str(int(place[1]) + 1))
     dollars = "$" if typed.is_latex(text) else ""
     return f"{dollars}{right.strip(' $&')}{dollars}" if same else text
+
+
+_MASS_MATRIX = re.compile(r"\$?\s*[MDHB](?:\([^()=]{1,9}\))?\s*=")
+
+
+def _of_one_joint(text: str, key: str) -> str:
+    """``M11 = ...`` for ``M = ...``, where an arm has one joint."""
+    if key not in ("M11", "mass_matrix[0][0]", "mass_matrix[0]"):
+        return text
+    return _MASS_MATRIX.sub(lambda left: ("$" if "$" in left[0] else "") + "M11 =", text, count=1)
 
 
 def _bare_name(name: str) -> str:

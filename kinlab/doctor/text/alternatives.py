@@ -382,6 +382,7 @@ def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
         if plus:
             _plus_for_times(line, place, at)
         _enclosed(line, place, at)
+        _enclosed_further(line, place, at)
         return
     if isinstance(node.op, ast.Pow):
         base = left.value
@@ -437,8 +438,8 @@ def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
         line.edit(place, -right.value, span, "factor", _BEHIND_A_MINUS, told, told_of)
 
 
-_ENCLOSED = 1.2
-"""Cost of lost parentheses around the end of a term and the next one."""
+_ENCLOSED, _ENCLOSED_TERMS = 1.2, 3
+"""Cost of lost parentheses around the end of a term and the next one; terms before the last."""
 _BEHIND_A_MINUS = 1.25
 """Cost of a number that does not belong behind a minus: the 2 of ``-2*m2``."""
 
@@ -479,6 +480,68 @@ def _enclosed(line: Line, place: Place, at: int) -> None:
         if quotient:
             return
         term = front
+
+
+def _enclosed_further(line: Line, place: Place, at: int) -> None:
+    """Parentheses lost around a part of several terms.
+
+    ``(a + b)*c`` for ``a + b*c``, ``k*(a + b)*c`` for ``k*a + b*c``, ``k*(a + b + c)`` for
+    ``k*a + b + c``; :func:`_enclosed` has those of two terms with nothing behind.
+    """
+    sum_, last = line.siblings[id(place)]
+    inside, count, sign = 0.0 * last.value, 0, line.source[at]
+    while count < _ENCLOSED_TERMS and not is_sum(last.node):
+        before, first = line.siblings[id(sum_)] if is_sum(sum_.node) else (None, sum_)
+        between = line.source[first.span[0] : last.span[0]]
+        if between.count("(") != between.count(")"):
+            return  # a parenthesis ends there
+        taken = isinstance(sum_.node, ast.BinOp) and isinstance(sum_.node.op, ast.Sub)
+        for start, front, tail in _cuts(line, first):
+            for end, inner, behind in _heads(line, last):
+                if count == 0 and end == last.span[1]:
+                    continue
+                signed = inner if sign == "+" else -inner
+                with np.errstate(all="ignore"):
+                    value = front * (tail + inside + signed) * behind
+                if before is not None:
+                    value = before.value - value if taken else before.value + value
+                old = line.source[first.span[0] : last.span[1]]
+                cut, stop = start - first.span[0], end - first.span[0]
+                shown = {"old": old, "new": f"{old[:cut]}({old[cut:stop]}){old[stop:]}"}
+                span = (start, end, f"({line.source[start:end]})")
+                told = N_("{old} should be {new}")
+                line.edit(place, value, span, "parentheses", _ENCLOSED, told, shown)
+        if before is None:
+            return
+        inside = inside - first.value if taken else inside + first.value
+        sum_, count = before, count + 1
+
+
+def _cuts(line: Line, term: Place) -> Iterator[tuple[int, Array | float, Array]]:
+    """Where parentheses may begin in a term: in front of it, or of one of its factors.
+
+    Each with what stands in front of them, and what is inside.
+    """
+    yield term.span[0], 1.0, term.value
+    factors = _multiplied(line, term)
+    for k, place in enumerate(factors[1:], 1):
+        tail = line.source[place.span[0] : term.span[1]]
+        if "/" not in tail and not is_sum(place.node) and tail.count("(") == tail.count(")"):
+            inner = np.prod([x.value for x in factors[k:]], axis=0)
+            with np.errstate(all="ignore"):
+                yield place.span[0], term.value / inner, inner
+
+
+def _heads(line: Line, term: Place) -> Iterator[tuple[int, Array, Array | float]]:
+    """Where they may end: behind a term, or behind one of its factors; inside, and behind them."""
+    yield term.span[1], term.value, 1.0
+    inner: Array | float = 1.0
+    for place in _multiplied(line, term)[:-1]:
+        end, inner = place.span[1], inner * place.value
+        head = line.source[term.span[0] : end]
+        if "/" not in head and not is_sum(place.node) and head.count("(") == head.count(")"):
+            with np.errstate(all="ignore"):
+                yield end, np.asarray(inner), term.value / inner
 
 
 def _plus_for_times(line: Line, place: Place, at: int) -> None:

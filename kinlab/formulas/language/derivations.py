@@ -88,7 +88,7 @@ def conclusion(text: str, entry: str, last: bool = False) -> str:
     except _UnsureError:
         return ""
     own = [one for one in found if begins_with(f"{one.name} = 0", entry)]
-    own = own or [one for one in found if _NUMBER.search(one.name) and is_name_of(one.name, entry)]
+    own = own or [one for one in found if _may_be(one.name) and is_name_of(one.name, entry)]
     own = own[-1:] if last else own
     formulas = [right for one in own[:-1] if (right := _formula(one.right))]
     formulas += [_formula(one.right, True) for one in own[-1:]]
@@ -102,6 +102,11 @@ def conclusion(text: str, entry: str, last: bool = False) -> str:
     told = "; ".join([*kept, chain])
     told = f"${told}$" if "\\" in told else told
     return "" if _A_GRID in told else told
+
+
+def _may_be(name: str) -> bool:
+    """Whether a name may be the entry's: one with a number, or an arm's only torque."""
+    return bool(_NUMBER.search(name)) or name.strip("\\ ") in ("tau", "τ")
 
 
 def steps_beside(text: str, entry: str) -> list[str]:

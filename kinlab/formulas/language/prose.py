@@ -399,6 +399,10 @@ def flat(text: str) -> str:
     return re.sub(r"[{}_\\$]|d{1,2}ot\b\s*", "", re.sub(r"\\[,;:! ]", " ", text))
 
 
+_LETTERS = 4
+"""Of a product that is written as one word."""
+
+
 def _words_in(text: str) -> bool:
     return any(_WORDS[typeset].search(prose) for prose, typeset in _proses(text))
 
@@ -425,7 +429,13 @@ def left_over(text: str, found: Iterable[tuple[str, str]], names: Iterable[str])
         names: of the formula and of what explains it.
     """
     known = {name.lower() for name in names}
-    phrase = next((phrase for word, phrase in found if word.lower() not in known), "")
+
+    def is_product(word: str) -> bool:  # + mgl*cos(q)
+        letters = known.issuperset(word.lower()) and len(word) <= _LETTERS
+        return letters and bool(re.search(rf"[-+*/=(·−½⅓¼\d]\s*{re.escape(word)}(?!\w)", text))
+
+    left = (one for one in found if one[0].lower() not in known and not is_product(one[0]))
+    phrase = next((phrase for _word, phrase in left), "")
     turned = any(_TURNED.search(prose) for prose in outside_formulas(text))
     return Doubt(phrase, turned) if phrase else None
 
