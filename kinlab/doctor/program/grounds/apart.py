@@ -47,6 +47,8 @@ _LEAST, _SPREAD, _TURN = 0.75, 1.1, (5**0.5 - 1) / 2
 """How much larger numbers of the arm are: never twice alike, and no simple parts of each other."""
 _RUN = 8
 """Ways of understanding a program's numbers in which it is run."""
+_OF_A_TENSOR = 9
+"""Its numbers."""
 _AXES = 2
 """Axes of a matrix."""
 _ENDS = ("base", "tool")
@@ -121,6 +123,7 @@ def arm_apart(
         table.n, cells, labels, found, negative, _summed(trial), names, unasked, rotors
     )
     items = sorted(map(reader.of_one, reader.items), key=lambda item: len(item.options))
+    reader.tie_what_has_no_number(items)
     ways = [*islice(_ways(items, frozenset()), _WAYS + 1)]
     if not ways:
         return None
@@ -514,6 +517,21 @@ class _Reader:
         left = [((first[0][0], k),) for k in of if k not in some[1:]]
         return replace(item, options=(*left, *others))
 
+    def tie_what_has_no_number(self, items: Sequence[_Item]) -> None:
+        """Lengths for which a program has the number of another: ``d4 = a2``."""
+        named = {k for item in items for option in item.options for _one, k in option}
+        for item in items:
+            of = {k for option in item.options for _one, k in option}
+            if len(of) != 1 or self.cells[first := min(of)].kind != "length":
+                continue
+            own = self.cells[first]
+            known = {self.cells[k].which for k in named}
+            alike = [x for x in self.cells if x.kind == "length" and x.which not in known]
+            same = [x for x in alike if _close(np.array([x.value]), own.value).any()]
+            if sum(bool(_close(np.array([own.value]), x).any()) for x in self.carried) == 1:
+                for one in same:
+                    self.tied.setdefault(one.which, self.tied.get(own.which, own.which))
+
     def _is_a_coordinate(self, k: int) -> bool:
         """Whether it is a centre's coordinate as it stands, and no sum with a length."""
         cell = self.cells[k]
@@ -593,7 +611,10 @@ def _cells(table: DHTable, gravity: float) -> list[_Cell]:
             which = f"com{axis}" if x else "d" if axis else "a"
             put("centre", which, k, (k,), [x, end + x, end - x] if end else [x])
         put("mass", "m", k, (k,), [link.mass])
-        put("moment", "I", k, (k,), moments(link))
+        about = [*moments(link)]  # its centre, its frame, its joint: that rather than a far end
+        of_joint = about[-_OF_A_TENSOR:] if standard else []
+        centre, behind = about[:_OF_A_TENSOR], about[_OF_A_TENSOR : len(about) - len(of_joint)]
+        put("moment", "I", k, (k,), [*centre, *of_joint, *behind])
         put("twist", "twist", -1, (k,), [link.alpha])
         put("kept", "kept", -1, (), _strange([link.theta, link.armature]))
     ends = np.asarray(table.tool, dtype=float), np.asarray(table.base, dtype=float)
