@@ -133,8 +133,9 @@ def _of_dimension(
 
 def _carried(node: ast.expr, scope: Scope) -> Iterator[ast.expr]:
     """``cross(p - pb, f)`` beside ``cross(c - pb, m*g)``: other vectors about the same point."""
-    for term in summands(node):
-        arm = term.args[0] if isinstance(term, ast.Call) and called(term) == "cross" else None
+    crossed = (x for x in summands(node) if isinstance(x, ast.Call) and called(x) == "cross")
+    for term in crossed:
+        arm = term.args[0]
         if not isinstance(arm, ast.BinOp) or not isinstance(arm.op, ast.Sub):
             continue
         kept = {text_of(arm.left), text_of(arm.right)}

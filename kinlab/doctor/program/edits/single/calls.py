@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import combinations
 
 from kinlab.doctor.bytecode.syntax import called, names, nodes, pieces, text_of
@@ -68,6 +68,8 @@ _FAMILIES = (
 _BEYOND = {"sin": False, "cos": True}
 """Functions that stand in ``1 - cos(t)`` and ``t - sin(t)``; whether 1 is what they are taken of.
 """
+_FARTHER = 1.12
+"""Cost of a loop from the farther of two counters on: ``range(max(i, j), n)``."""
 _SQUARE = 1.1
 """Cost of a square for what is always positive."""
 _RODRIGUES = 1.09
@@ -365,12 +367,23 @@ def _range(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
             for new in ([load], [plus(load, 1)], [load, args[0]], [plus(load, 1), args[0]]):
                 yield here.within(node, "args", new, "loop", cost)
         yield here.within(node, "args", [ast.Constant(1), args[0]], "loop", 1.2)
+        for both in combinations(sorted(around), 2):
+            farther = _larger([ast.Name(one, ast.Load()) for one in both])
+            yield here.within(node, "args", [farther, args[0]], "loop", _FARTHER)
     else:
+        counted = {*inner, *scope.whole} if isinstance(args[0], ast.Name) else set[str]()
+        for name in sorted(counted - {*names(args[0])}):
+            farther = _larger([args[0], ast.Name(name, ast.Load())])
+            yield here.within(node, "args", [farther, *args[1:]], "loop", _FARTHER)
         yield here.within(node, "args", [args[1]], "loop", 1.25)
         for name in inner:
             load = ast.Name(name, ast.Load())
             yield here.within(node, "args", [load, *args[1:]], "loop", 1.25)
             yield here.within(node, "args", [plus(load, 1), *args[1:]], "loop", 1.25)
+
+
+def _larger(both: Sequence[ast.expr]) -> ast.expr:
+    return ast.Call(ast.Name("max", ast.Load()), [*both], [])
 
 
 def _other_way(here: Here) -> Iterator[ProgramEdit]:

@@ -11,7 +11,7 @@ from kinlab.doctor.bytecode.syntax import called, copied, shallow
 from kinlab.doctor.program.edits.chains import SUMS
 from kinlab.doctor.program.edits.numbers.data import moved_on, other_words
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import Here, ProgramEdit, follow, number
+from kinlab.doctor.program.places import Here, ProgramEdit, follow, is_nothing, number
 
 _LONGEST = 6
 """Entries of a list of which any two may have been exchanged."""
@@ -297,6 +297,10 @@ def _opposite(node: ast.expr) -> ast.expr:
     return ast.UnaryOp(ast.USub(), node)
 
 
+_TURNED = 1.14
+"""Cost of a number along another axis, with the other sign."""
+
+
 def swapped_in(here: Here, row: ast.List | ast.Tuple, observed: Observed) -> Iterator[ProgramEdit]:
     """Two entries for one another."""
     halves = _are_halves(row, observed)
@@ -308,6 +312,10 @@ def swapped_in(here: Here, row: ast.List | ast.Tuple, observed: Observed) -> Ite
             cost = 1.12 + FLAT * moved  # of what is a place, and no direction
             cost = _HALVED if halves else cost
             yield here.within(row, "elts", swapped, "entries swapped", cost)
+            empty = [is_nothing(one) for one in (row.elts[i], row.elts[j])]
+            if any(empty) and not all(empty):  # along another axis, the other way
+                turned = [_opposite(x) if k in (i, j) else x for k, x in enumerate(swapped)]
+                yield here.within(row, "elts", turned, "entries swapped", _TURNED)
 
 
 def _are_halves(row: ast.List | ast.Tuple, observed: Observed) -> bool:
