@@ -69,3 +69,17 @@ def test_each_equation_of_the_entry_counts() -> None:
     twice = LAGRANGE.replace("thus", "τ1 = (m1 lc1² + 2 I1) q̈1 + m1 g lc1 cos q1\nthus")
     found = kl.diagnose("single_link", "tau1", twice)
     assert not found.agrees
+
+
+def test_the_torque_of_the_only_joint_needs_no_number() -> None:
+    text = (
+        r"L = T - V = \frac{1}{6} m l^2 \dot\theta^2 - \frac{1}{2} m g l \sin\theta"
+        "\n"
+        r"\frac{d}{dt}\frac{\partial L}{\partial\dot\theta} = \frac{1}{3} m l^2\ddot\theta"
+        "\n"
+        r"\tau = \frac{1}{3} m l^2\ddot\theta + \frac{1}{2} m g l\cos\theta"
+    )
+    assert kl.diagnose("single_link", "tau1", text).agrees
+    wrong = text.replace(r"+ \frac{1}{2} m g l\cos", r"- \frac{1}{2} m g l\cos")
+    (cause,) = kl.diagnose("single_link", "tau1", wrong).causes
+    assert cause.kinds == ("sign",)

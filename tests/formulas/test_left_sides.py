@@ -292,3 +292,22 @@ def test_an_equation_that_is_not_used_is_named() -> None:
 def test_a_number_of_an_equation_behind_a_unit_is_no_factor(number) -> None:
     text = f"y = l1*sin(theta1) = 0.6 sin(theta1) m{number}"
     assert kl.diagnose("single_link", "y", text).agrees
+
+
+@pytest.mark.parametrize("left", ["M", "M(q)", "D", "$M", "H(q)"])
+def test_the_mass_matrix_of_one_joint_has_no_number(left) -> None:
+    formula = f"{left} = m*l^2/3" if left[0] != "$" else "$M = \\frac{m l^2}{3}$"
+    assert kl.diagnose("single_link", "M11", formula).agrees
+    assert not kl.diagnose("single_link", "M11", formula.replace("3", "2")).agrees
+
+
+def test_the_mass_matrix_of_several_is_none_of_its_entries() -> None:
+    with pytest.raises(ExpressionError, match="begins with M"):
+        kl.diagnose("planar2r", "M11", "M = m1*l1^2 + m2*(l1^2 + l2^2 + 2*l1*l2*c2)")
+
+
+def test_a_product_of_letters_is_no_word() -> None:
+    front, behind = "the torque is τ = ⅓ml²·θ̈ + ", ", friction neglected"
+    assert kl.diagnose("single_link", "tau1", f"{front}½mgl·cosθ{behind}").agrees
+    (cause,) = kl.diagnose("single_link", "tau1", f"{front}mgl·cosθ{behind}").causes
+    assert cause.kinds == ("factor",)
