@@ -241,6 +241,22 @@ def f(q):
     py = 0.45*s1 + 0.35*s12 + 0.3*s12*c3
     return np.array([[r11, r12, r13, px], [r21, r22, r23, py], [s3, c3, 0, 0.3*s3], [0, 0, 0, 1]])
 """
+MILLIMETRES = """
+import numpy as np
+INNER, OUTER, COLUMN = 325.0, 275.0, 387.0
+
+def f(q):
+    shoulder, elbow, drop, wrist = q
+    a = shoulder + elbow
+    x = INNER*np.cos(shoulder) + OUTER*np.cos(a)
+    y = INNER*np.sin(shoulder) + OUTER*np.sin(a)
+    z = COLUMN - 1000*drop
+    t = a - wrist
+    T = np.eye(4)
+    T[:3, :3] = [[np.cos(t), np.sin(t), 0], [np.sin(t), -np.cos(t), 0], [0, 0, -1]]
+    T[:3, 3] = np.array([x, y, z])/1000
+    return T
+"""
 ARTICULATED = """
 import numpy as np
 L, M = [0.5, 0.4], [2.0, 1.5]
@@ -298,9 +314,10 @@ def f(q, qd, tau):
         ("stanford", "fk", ACROSS, "[0, -0.0203, q[2]]", "[0.0203, 0, q[2]]"),
         ("planar3r", "gradient_step", TWICE, "q - rate*grad", "q - rate*2*grad"),
         ("spatial3r", "fk", ENTRIES, "r23 = -c12", "r23 = c12"),
+        ("scara", "fk", MILLIMETRES, "COLUMN - 1000*drop", "COLUMN - drop"),
         ("planar2r", "forward_dynamics", ARTICULATED, "pA[i] + Ia @ c[i] + U", "pA[i] + U"),
     ],
-    ids=["carried", "unread", "letters", "inner", "entry", "index", "range", "slice", "tensor", "home", "axis", "two", "named", "matrix"],
+    ids=["carried", "unread", "letters", "inner", "entry", "index", "range", "slice", "tensor", "home", "axis", "two", "named", "metres", "matrix"],
 )  # fmt: skip
 def test_a_slip_in_a_loop_or_a_row_is_told_in_its_line(
     robot, quantity, text, right, slip, tmp_path

@@ -79,6 +79,8 @@ _KEPT = 1.22
 """Cost of a factor of what an object only keeps."""
 _UNPACKED = 1.2
 """Cost of a sign of all that is given to several names at once."""
+_MILLIMETRES, _IN_MILLIMETRES = {"1000", "1000.0"}, 1.1
+"""What lengths are divided by in the end, and cost of a term that is in metres all the same."""
 _NAMED_FOR_THIS = 1.1
 """Cost of a sign of an entry that has a name for this alone: it is lost where that is set."""
 _AS_SET = 1.05
@@ -210,6 +212,8 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
             cost = _KEPT if _keeps(parent, node) else cost
             cost = _MIXED if value == 2 and _is_mixed(here) else cost
             yield here.instead(times, "factor", cost)
+        if summand and isinstance(node, ast.Name | ast.Subscript) and scope.divisors & _MILLIMETRES:
+            yield here.instead(chains.times(number(1000), node), "factor", _IN_MILLIMETRES)
     if (summand or whole) and not isinstance(node, ast.Constant):
         yield from _divided(here, scope, summand)
     if trig:
