@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 from itertools import permutations, product
 from math import pi
@@ -79,6 +80,12 @@ _KEPT = 1.22
 """Cost of a factor of what an object only keeps."""
 _UNPACKED = 1.2
 """Cost of a sign of all that is given to several names at once."""
+_TARGETS = re.compile(r"\w*target\w*|\w*goal\w*|\w*des(?:ired)?|[xp]_?d|x_?ref|ref", re.IGNORECASE)
+"""How what a tool is to reach is called."""
+_LESS_THE_TARGET = 0.95
+"""Cost of an error that is taken the other way round."""
+_OF_A_LIST = 0.08
+"""What a factor costs more of an array as it is typed: it is lost where that is used."""
 _MILLIMETRES, _IN_MILLIMETRES = {"1000", "1000.0"}, 1.1
 """What lengths are divided by in the end, and cost of a term that is in metres all the same."""
 _NAMED_FOR_THIS = 1.1
@@ -194,6 +201,8 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
             cost = _AS_SET
         if entry and isinstance(node, ast.Name) and _is_for_this_alone(here, node.id):
             cost = _NAMED_FOR_THIS
+        if isinstance(parent, ast.Assign) and _is_less_the_target(node):
+            cost = _LESS_THE_TARGET
         yield here.instead(chains.opposite(node), "sign", cost)
     below = isinstance(op, ast.Div) and here.field == "right"
     own = scope.observed.of(node)
@@ -211,6 +220,9 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
             cost = 1.15 if rare else 1.05 + _ODD * (passed or counted)
             cost = _KEPT if _keeps(parent, node) else cost
             cost = _MIXED if value == 2 and _is_mixed(here) else cost
+            typed = isinstance(node, ast.Call) and called(node) in ("array", "asarray")
+            if (typed or here.field == "elt") and _is_a_term_elsewhere(here):
+                cost += _OF_A_LIST
             yield here.instead(times, "factor", cost)
         if summand and isinstance(node, ast.Name | ast.Subscript) and scope.divisors & _MILLIMETRES:
             yield here.instead(chains.times(number(1000), node), "factor", _IN_MILLIMETRES)
@@ -268,6 +280,25 @@ def _in_the_other_case(here: Here) -> Iterator[ast.expr]:
         for term in summands(other):
             if isinstance(term, ENTRIES):
                 yield term
+
+
+def _is_a_term_elsewhere(here: Here) -> bool:
+    """Whether what a statement sets is a term of a sum: ``return rate - grad``."""
+    line = statement_of(here.above)
+    target = line.targets[0] if isinstance(line, ast.Assign) else None
+    sums = [x for x in nodes(here.above[0]) if isinstance(x, ast.BinOp) and _is_sum(x.op)]
+    terms = {getattr(side, "id", "") for x in sums for side in (x.left, x.right)}
+    return isinstance(target, ast.Name) and target.id in terms
+
+
+def _is_sum(op: ast.operator) -> bool:
+    return isinstance(op, ast.Add | ast.Sub)
+
+
+def _is_less_the_target(node: ast.expr) -> bool:
+    """Whether it is where the tool is less where it is to be: everybody takes that from it."""
+    taken = isinstance(node, ast.BinOp) and isinstance(node.op, ast.Sub)
+    return taken and bool(_TARGETS.fullmatch(getattr(getattr(node, "right", None), "id", "")))
 
 
 def _is_for_this_alone(here: Here, name: str) -> bool:
