@@ -285,6 +285,8 @@ def _formula_file(
         steps = [one for one in steps_beside(doubts[key][0], key) if _bare_name(one) not in given]
         judged = file.formulas.keys()
         steps = [x for x in steps if not any(typed.is_name_of(x, other) for other in judged)]
+        if last is not None and last.number == 1:
+            steps = [x for x in steps if _of_one_joint(f"{x} = y", key) == f"{x} = y"]
         if steps:
             said = _("not judged: what is given for {names}").format(names=", ".join(steps))
             remarks[key] = "; ".join(filter(None, (remarks.get(key), said)))
@@ -310,7 +312,8 @@ def _of_gravity(text: str, key: str) -> str:
     return f"{dollars}{right.strip(' $&')}{dollars}" if same else text
 
 
-_MASS_MATRIX = re.compile(r"\$?\s*[MDHB](?:\([^()=]{1,9}\))?\s*=")
+_MASS_MATRIX = re.compile(r"^\s*\$?\s*[MDHB](?:\([^()=]{1,9}\))?\s*=(?=[^=]*[A-Za-z])")
+"""With a formula behind it: ``M = 2.5`` is a mass."""
 
 
 def _of_one_joint(text: str, key: str) -> str:

@@ -311,3 +311,11 @@ def test_a_product_of_letters_is_no_word() -> None:
     assert kl.diagnose("single_link", "tau1", f"{front}½mgl·cosθ{behind}").agrees
     (cause,) = kl.diagnose("single_link", "tau1", f"{front}mgl·cosθ{behind}").causes
     assert cause.kinds == ("factor",)
+
+
+def test_a_mass_is_no_mass_matrix() -> None:
+    """Nor is it told as not judged what is judged."""
+    front = "By the parallel axis theorem "
+    told = kl.diagnose("single_link", "M11", f"{front}M = 1/12*m*l^2 + m*(l/2)^2 = 1/3*m*l^2.")
+    assert told.agrees and not told.remarks
+    assert kl.diagnose("single_link", "M11", "M = 2.5 kg: M11 = M*l^2/3").agrees

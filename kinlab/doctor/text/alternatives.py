@@ -527,7 +527,7 @@ def _cuts(line: Line, term: Place) -> Iterator[tuple[int, Array | float, Array]]
     for k, place in enumerate(factors[1:], 1):
         tail = line.source[place.span[0] : term.span[1]]
         if "/" not in tail and not is_sum(place.node) and tail.count("(") == tail.count(")"):
-            inner = np.prod([x.value for x in factors[k:]], axis=0)
+            inner = np.asarray(math.prod(x.value for x in factors[k:]))
             with np.errstate(all="ignore"):
                 yield place.span[0], term.value / inner, inner
 

@@ -131,7 +131,7 @@ def _tests_of_rows(here: Here, scope: Scope) -> Iterator[ast.expr]:
             continue
         for k, cells in enumerate(zip(*rows, strict=False)):
             letters = {*cells} if all(isinstance(one, str) for one in cells) else {""}
-            for counter in scope.counting if len(letters) == _KINDS else ():
+            for counter in sorted(scope.counting) if len(letters) == _KINDS else ():
                 at = ast.Name(counter, ast.Load())
                 row = ast.Subscript(ast.Name(name, ast.Load()), at, ast.Load())
                 cell = ast.Subscript(row, ast.Constant(k), ast.Load())
