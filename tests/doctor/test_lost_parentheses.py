@@ -1,4 +1,4 @@
-"""Parentheses that are lost around a part of several terms of a formula as text."""
+"""Parentheses of a formula as text that are lost, closed too early or too late, or too many."""
 
 from __future__ import annotations
 
@@ -29,10 +29,44 @@ import kinlab as kl
             r"\frac{1}{2} (I_1 + m_1 l_{c1}^2) \dot q_1^2",
             "",
         ),
+        ("scara", "g3", "", "-m3 + m4*g", "-(m3 + m4)*g", ""),
+        (
+            *("planar2r_rods", "g1", ""),
+            r"\frac{m_1}{2}+m_2 g l_1\cos\theta_1",
+            r"(\frac{m_1}{2}+m_2) g l_1 \cos\theta_1",
+            r" + \frac12 m_2 g l_2\cos(\theta_1+\theta_2)",
+        ),
+        ("planar3r", "J23", "l3*", "cos(q1+q2)+q3", "cos(q1+q2+q3)", ""),
+        ("planar3r", "x", "l1*c1 + l3*c123 + l2*", "cos(q1)+q2", "cos(q1+q2)", ""),
+        ("planar3r", "M33", "", "(I_3 + m_3) l_{c3}^2", "I_3 + m_3 l_{c3}^2", ""),
+        (
+            *("planar2r_rods", "M11", "I1 + m1*lc1^2 + "),
+            "m2*(l1^2 + lc2^2 + 2*l1*lc2*cos(q2) + I2)",
+            "m2*(l1^2 + lc2^2 + 2*l1*lc2*cos(q2)) + I2",
+            "",
+        ),
+        (
+            *("planar2r", "g1", ""),
+            "(m1+m2)*g*(l1*cos(q1) + m2*g*l2*cos(q1+q2))",
+            "(m1+m2)*g*l1*cos(q1) + m2*g*l2*cos(q1+q2)",
+            "",
+        ),
     ],
-    ids=["in front", "three terms", "behind", "within"],
+    ids=[
+        "in front",
+        "three terms",
+        "behind",
+        "within",
+        "sign",
+        "quotient",
+        "angle",
+        "last angle",
+        "added",
+        "late",
+        "around",
+    ],
 )
-def test_parentheses_around_a_part_of_several_terms(robot, entry, front, old, new, behind) -> None:
+def test_parentheses_are_set_right(robot, entry, front, old, new, behind) -> None:
     assert kl.diagnose(robot, entry, front + new + behind).agrees
     (cause,) = kl.diagnose(robot, entry, front + old + behind).causes
     assert cause.kinds == ("parentheses",), cause

@@ -12,6 +12,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 
@@ -383,6 +384,8 @@ def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
             _plus_for_times(line, place, at)
         _enclosed(line, place, at)
         _enclosed_further(line, place, at)
+        _into_the_angle(line, place)
+        _laid_open(line, place)
         return
     if isinstance(node.op, ast.Pow):
         base = left.value
@@ -492,21 +495,22 @@ def _enclosed_further(line: Line, place: Place, at: int) -> None:
     inside, count, sign = 0.0 * last.value, 0, line.source[at]
     while count < _ENCLOSED_TERMS and not is_sum(last.node):
         before, first = line.siblings[id(sum_)] if is_sum(sum_.node) else (None, sum_)
-        between = line.source[first.span[0] : last.span[0]]
+        (begin, _), (then, close) = _with_its_own(line, first), _with_its_own(line, last)
+        between = line.source[begin:then]
         if between.count("(") != between.count(")"):
             return  # a parenthesis ends there
         taken = isinstance(sum_.node, ast.BinOp) and isinstance(sum_.node.op, ast.Sub)
-        for start, front, tail in _cuts(line, first):
-            for end, inner, behind in _heads(line, last):
-                if count == 0 and end == last.span[1]:
+        for start, front, tail in _cuts(line, first, begin):
+            for end, inner, behind in _heads(line, last, close):
+                if count == 0 and end == close:
                     continue
                 signed = inner if sign == "+" else -inner
                 with np.errstate(all="ignore"):
                     value = front * (tail + inside + signed) * behind
                 if before is not None:
                     value = before.value - value if taken else before.value + value
-                old = line.source[first.span[0] : last.span[1]]
-                cut, stop = start - first.span[0], end - first.span[0]
+                old = line.source[begin:close]
+                cut, stop = start - begin, end - begin
                 shown = {"old": old, "new": f"{old[:cut]}({old[cut:stop]}){old[stop:]}"}
                 span = (start, end, f"({line.source[start:end]})")
                 told = N_("{old} should be {new}")
@@ -517,12 +521,112 @@ def _enclosed_further(line: Line, place: Place, at: int) -> None:
         sum_, count = before, count + 1
 
 
-def _cuts(line: Line, term: Place) -> Iterator[tuple[int, Array | float, Array]]:
+def _into_the_angle(line: Line, place: Place) -> None:
+    """Parentheses that are closed before an angle's end: ``cos(q1)+q2`` for ``cos(q1+q2)``."""
+    sum_, more = place, 0.0 * place.value
+    for _one in range(_ENCLOSED_TERMS):
+        if not is_sum(sum_.node):
+            return
+        taken = isinstance(sum_.node, ast.BinOp) and isinstance(sum_.node.op, ast.Sub)
+        sum_, angle = line.siblings[id(sum_)]
+        meant = line.meaning(angle.node.id) if isinstance(angle.node, ast.Name) else None
+        found = None if meant is None else _MOTION.fullmatch(str(meant.value))
+        if found is None or found[1] != "q":
+            return
+        more = more - angle.value if taken else more + angle.value
+        before, term = line.siblings[id(sum_)] if is_sum(sum_.node) else (None, sum_)
+        wave = _multiplied(line, term)[-1]
+        name = getattr(getattr(wave.node, "func", None), "id", "")
+        if name in ("sin", "cos") and wave.span[1] == term.span[1]:
+            turned = (np.sin if name == "sin" else np.cos)(line.siblings[id(wave)][0].value + more)
+            with np.errstate(all="ignore"):
+                value = term.value / wave.value * turned
+            if before is not None:
+                taken = isinstance(sum_.node, ast.BinOp) and isinstance(sum_.node.op, ast.Sub)
+                value = before.value - value if taken else before.value + value
+            start, close = wave.span[0], place.span[1]
+            old, behind = line.source[start:close], line.source[wave.span[1] : close]
+            shown = {"old": old, "new": f"{line.source[start : wave.span[1] - 1]}{behind})"}
+            span = (wave.span[1] - 1, close, f"{behind})")
+            told = N_("{old} should be {new}")
+            line.edit(place, value, span, "parentheses", _ENCLOSED, told, shown)
+            return
+
+
+def _laid_open(line: Line, place: Place) -> None:
+    """Parentheses too many around a factor, or around too many of its terms.
+
+    ``I + m*l**2`` for ``(I + m)*l**2``, ``m*(a + b) + c`` for ``m*(a + b + c)``.
+    """
+    whole = place
+    while whole.above is not None and is_product(whole.above.node):
+        if isinstance(whole.above.node.op, ast.Div) and whole.role:
+            return  # below a line
+        whole = whole.above
+    factors = _multiplied(line, whole)
+    at = next((k for k, one in enumerate(factors) if one is place), None)
+    start, end = _with_its_own(line, place)
+    if at is None or whole is place or start == place.span[0]:
+        return
+    front = math.prod(one.value for one in factors[:at])
+    with np.errstate(all="ignore"):
+        behind = whole.value / place.value / front
+    above = whole.above.node if whole.above is not None else None
+    taken = isinstance(above, ast.BinOp) and isinstance(above.op, ast.Sub) and whole.role == 1
+    turn = -1.0 if taken else 1.0  # what comes out of the parentheses has the sign that it shows
+    first, *rest = _terms_of(line, place)
+    values, inner = [first[0], *(value for value, _at in rest)], line.segment(place)
+    out = [turn * one for one in values]
+    opened: list[tuple[Any, str]] = [(front * values[0] + sum(out[1:-1]) + out[-1] * behind, inner)]
+    for k, (_value, (left, right)) in enumerate(rest, 1):
+        if k > 1 and at and end == whole.span[1]:
+            kept = line.source[place.span[0] : left].rstrip()
+            last = line.source[left : place.span[1]]
+            opened.append((front * sum(values[:k]) + sum(out[k:]), f"({kept}) {last}"))
+        if not at and k < len(rest) and line.source[left] == "+":
+            kept = line.source[right : place.span[1]].lstrip()
+            moved = f"{line.source[place.span[0] : right]} ({kept})"
+            opened.append((values[0] + sum(out[1:k]) + sum(out[k:]) * behind, moved))
+    told = N_("{old} should be {new}")
+    old, (begin, close) = line.segment(whole), whole.span
+    for value, new in opened:
+        shown = {"old": old, "new": line.source[begin:start] + new + line.source[end:close]}
+        span = (start, end, new)
+        line.edit(whole, np.asarray(value), span, "parentheses", _ENCLOSED, told, shown)
+
+
+def _terms_of(line: Line, place: Place) -> list[tuple[Array, tuple[int, int]]]:
+    """The terms of a sum, each with where its sign stands, and where that ends."""
+    found: list[tuple[Array, tuple[int, int]]] = []
+    while is_sum(place.node):
+        taken = isinstance(place.node, ast.BinOp) and isinstance(place.node.op, ast.Sub)
+        left, last = line.siblings[id(place)]
+        gap = line.source[left.span[1] : last.span[0]]
+        sign = left.span[1] + gap.index("-" if taken else "+")
+        found.insert(0, (-last.value if taken else last.value, (sign, sign + 1)))
+        place = left
+    return [(place.value, (place.span[0], place.span[0])), *found]
+
+
+def _with_its_own(line: Line, place: Place) -> tuple[int, int]:
+    """Where a piece begins and ends, with parentheses that stand around nothing else."""
+    start, end = place.span
+    while True:
+        before = re.search(r"(?<![\w\s])\s*\(\s*$", f" {line.source[:start]}")
+        behind = re.match(r"\s*\)", line.source[end:])
+        if before is None or behind is None:
+            return start, end
+        start, end = line.source.rindex("(", 0, start), end + behind.end()
+
+
+def _cuts(line: Line, term: Place, begin: int) -> Iterator[tuple[int, Array | float, Array]]:
     """Where parentheses may begin in a term: in front of it, or of one of its factors.
 
     Each with what stands in front of them, and what is inside.
     """
-    yield term.span[0], 1.0, term.value
+    yield begin, 1.0, term.value
+    if line.source[begin] == "-":
+        yield begin + 1, -1.0, -term.value
     factors = _multiplied(line, term)
     for k, place in enumerate(factors[1:], 1):
         tail = line.source[place.span[0] : term.span[1]]
@@ -532,9 +636,9 @@ def _cuts(line: Line, term: Place) -> Iterator[tuple[int, Array | float, Array]]
                 yield place.span[0], term.value / inner, inner
 
 
-def _heads(line: Line, term: Place) -> Iterator[tuple[int, Array, Array | float]]:
+def _heads(line: Line, term: Place, close: int) -> Iterator[tuple[int, Array, Array | float]]:
     """Where they may end: behind a term, or behind one of its factors; inside, and behind them."""
-    yield term.span[1], term.value, 1.0
+    yield close, term.value, 1.0
     inner: Array | float = 1.0
     for place in _multiplied(line, term)[:-1]:
         end, inner = place.span[1], inner * place.value
