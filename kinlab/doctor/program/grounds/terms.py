@@ -184,6 +184,7 @@ def _of_matrices(
     own = {*beside, *map(text_of, summands(here.node))}
     line = statement_of(here.above).lineno
     found: list[tuple[float, int, ast.expr]] = []
+    just_set: list[tuple[float, int, ast.expr]] = []
     for term in _matrix_products(scope, shape):
         if text_of(term) in own or any(scope.set_at.get(x, 0) > line for x in names(term)):
             continue
@@ -198,9 +199,9 @@ def _of_matrices(
         elif told and size is not None and _varies(size):
             found.append((_FITTING, used, term))
         elif not told and len(shape) == 1 and 0 < line - scope.set_at.get(_front(term), 0) <= _NEAR:
-            found.append((_JUST_SET, used, term))
+            just_set.append((_JUST_SET, used, term))
     found.sort(key=lambda one: one[:2])
-    for cost, _used, term in found[:_FEW]:
+    for cost, _used, term in (*found[:_FEW], *just_set[:_FEW]):
         yield here.instead(ast.BinOp(here.node, ast.Add(), term), "missing term", cost)
 
 
