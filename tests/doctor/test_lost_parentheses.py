@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 import kinlab as kl
+from kinlab.doctor.text.line import Line
+from kinlab.formulas import tree
 
 
 @pytest.mark.parametrize(
@@ -71,3 +74,42 @@ def test_parentheses_are_set_right(robot, entry, front, old, new, behind) -> Non
     (cause,) = kl.diagnose(robot, entry, front + old + behind).causes
     assert cause.kinds == ("parentheses",), cause
     assert f"{old} should be {new} " in cause.sentence
+
+
+FORMULAS = [
+    ("planar3r", "J11", "-2*l1*(s1 + l2*s12 - l3*s123)"),
+    ("planar3r", "J11", "l2 - l1*(s1 + l2*s12 - l3*s123)/2"),
+    ("planar3r", "J11", "l2*s1 - (s1 + l2*s12 - l3*s123)*l2/2"),
+    ("planar3r", "J11", "-(l2*s1 + l3)*s12 - l1*s1 - l3*(s1 - l2)*s123"),
+    ("planar3r", "y", "l1*sin(q1)-q2 + l2*sin(q1)+q2-q3 - l3*cos(q1+q2)-q3"),
+    ("planar2r", "g1", "(m1+m2)*g*-l1*c1 + -m2*g*l2*c12"),
+    (
+        "planar2r_rods",
+        "M11",
+        r"\frac{m_1+m_2}{3} l_1^2 + \frac12 m_2 (l_1 l_2 c_2 + \frac{l_2^2}{3})",
+    ),
+    ("planar2r_rods", "T", "1/2*(m1+m2)*l1**2*qd1**2 + 1/2*m2*(l1**2*qd1**2 + l2**2*qd2**2)"),
+    ("planar2r_rods", "tau2", "I2 + m2*lc2^2/3*(qdd1+qdd2) - m2*l1*lc2*(c2*qdd1 - s2*qd1^2 + qd2)"),
+]
+
+
+def test_what_is_written_is_what_was_tried(monkeypatch) -> None:
+    """The sum of a slip's effects is not asked here: each text that is proposed has its value."""
+    tried, edit = [], Line.edit
+
+    def noted(self, place, value, span, kind, cost, told, pieces, everywhere=()):
+        if kind == "parentheses":
+            text = self.source[: span[0]] + span[2] + self.source[span[1] :]
+            with np.errstate(all="ignore"):
+                typed = tree.evaluate(self.meant(text), self.at)
+                tried.append((text, self.climbed(place, value), np.broadcast_to(typed, self.count)))
+        return edit(self, place, value, span, kind, cost, told, pieces, everywhere)
+
+    monkeypatch.setattr(Line, "edit", noted)
+    for one in FORMULAS:
+        assert not kl.diagnose(*one).agrees
+    for text, value, typed in tried:
+        sure = np.isfinite(value) & np.isfinite(typed)
+        assert sure.any(), text
+        np.testing.assert_allclose(value[sure], typed[sure], rtol=1e-6, atol=1e-9, err_msg=text)
+    assert len(tried) > 150

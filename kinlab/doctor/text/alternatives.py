@@ -447,6 +447,26 @@ _BEHIND_A_MINUS = 1.25
 """Cost of a number that does not belong behind a minus: the 2 of ``-2*m2``."""
 
 
+def _takes_away(place: Place) -> bool:
+    """Whether it is a difference."""
+    return is_sum(place.node) and isinstance(place.node.op, ast.Sub)
+
+
+def _last_of(line: Line, sum_: Place) -> tuple[Place | None, Place]:
+    """What stands before the last term of a sum, and this; of a term alone nothing, and it."""
+    if not is_sum(sum_.node):
+        return None, sum_
+    before, last = line.siblings[id(sum_)]
+    return before, last
+
+
+def _with_last(before: Place | None, sum_: Place, value: Array) -> Array:
+    """A sum's value with another one of its last term."""
+    if before is None:
+        return value
+    return before.value - value if _takes_away(sum_) else before.value + value
+
+
 def _enclosed(line: Line, place: Place, at: int) -> None:
     """A term with what stands behind its product, or quotient, in parentheses that are lost.
 
@@ -454,7 +474,7 @@ def _enclosed(line: Line, place: Place, at: int) -> None:
     rather missing in the other term.
     """
     left, right = line.siblings[id(place)]
-    before, term = line.siblings[id(left)] if is_sum(left.node) else (None, left)
+    before, term = _last_of(line, left)
     term_at = term.span[0]
     back = right.value if line.source[at] == "+" else -right.value
     inner: Array | None = None
@@ -472,9 +492,7 @@ def _enclosed(line: Line, place: Place, at: int) -> None:
             behind = f"({line.source[cut : place.span[1]].strip()})"
             if closes(behind) < len(behind) - 1:
                 return  # it stands in parentheses that end here
-            if before is not None:
-                taken = isinstance(left.node, ast.BinOp) and isinstance(left.node.op, ast.Sub)
-                value = before.value - value if taken else before.value + value
+            value = _with_last(before, left, value)
             shown = {"old": line.source[term_at : place.span[1]]}
             shown["new"] = line.source[term_at:cut] + behind
             told = N_("{old} should be {new}")
@@ -492,33 +510,39 @@ def _enclosed_further(line: Line, place: Place, at: int) -> None:
     ``k*a + b + c``; :func:`_enclosed` has those of two terms with nothing behind.
     """
     sum_, last = line.siblings[id(place)]
-    inside, count, sign = 0.0 * last.value, 0, line.source[at]
-    while count < _ENCLOSED_TERMS and not is_sum(last.node):
-        before, first = line.siblings[id(sum_)] if is_sum(sum_.node) else (None, sum_)
-        (begin, _), (then, close) = _with_its_own(line, first), _with_its_own(line, last)
-        between = line.source[begin:then]
-        if between.count("(") != between.count(")"):
+    inside, sign = 0.0 * last.value, 1.0 if line.source[at] == "+" else -1.0
+    then, close = _with_its_own(line, last)
+    heads = [*_heads(line, last, close)]
+    for count in range(0 if is_sum(last.node) else _ENCLOSED_TERMS):
+        before, first = _last_of(line, sum_)
+        begin, _end = _with_its_own(line, first)
+        if not _is_closed(line.source[begin:then]):
             return  # a parenthesis ends there
-        taken = isinstance(sum_.node, ast.BinOp) and isinstance(sum_.node.op, ast.Sub)
+        old = line.source[begin:close]
         for start, front, tail in _cuts(line, first, begin):
-            for end, inner, behind in _heads(line, last, close):
-                if count == 0 and end == close:
-                    continue
-                signed = inner if sign == "+" else -inner
+            for end, inner, behind in heads[not count :]:  # behind two whole terms: ``_enclosed``
                 with np.errstate(all="ignore"):
-                    value = front * (tail + inside + signed) * behind
-                if before is not None:
-                    value = before.value - value if taken else before.value + value
-                old = line.source[begin:close]
+                    value = front * (tail + inside + sign * inner) * behind
                 cut, stop = start - begin, end - begin
                 shown = {"old": old, "new": f"{old[:cut]}({old[cut:stop]}){old[stop:]}"}
                 span = (start, end, f"({line.source[start:end]})")
                 told = N_("{old} should be {new}")
+                value = _with_last(before, sum_, value)
                 line.edit(place, value, span, "parentheses", _ENCLOSED, told, shown)
         if before is None:
             return
-        inside = inside - first.value if taken else inside + first.value
-        sum_, count = before, count + 1
+        inside = inside - first.value if _takes_away(sum_) else inside + first.value
+        sum_ = before
+
+
+def _is_closed(text: str) -> bool:
+    """Whether as many parentheses end in a piece of text as begin there."""
+    return text.count("(") == text.count(")")
+
+
+def _is_plain(text: str) -> bool:
+    """Whether it is a product of factors without quotients, or signs behind the first."""
+    return _is_closed(text) and not re.search(r"/|\*\s*[-+]", text)
 
 
 def _into_the_angle(line: Line, place: Place) -> None:
@@ -527,28 +551,25 @@ def _into_the_angle(line: Line, place: Place) -> None:
     for _one in range(_ENCLOSED_TERMS):
         if not is_sum(sum_.node):
             return
-        taken = isinstance(sum_.node, ast.BinOp) and isinstance(sum_.node.op, ast.Sub)
+        sign = -1.0 if _takes_away(sum_) else 1.0
         sum_, angle = line.siblings[id(sum_)]
         meant = line.meaning(angle.node.id) if isinstance(angle.node, ast.Name) else None
         found = None if meant is None else _MOTION.fullmatch(str(meant.value))
         if found is None or found[1] != "q":
             return
-        more = more - angle.value if taken else more + angle.value
-        before, term = line.siblings[id(sum_)] if is_sum(sum_.node) else (None, sum_)
+        more = more + sign * angle.value
+        before, term = _last_of(line, sum_)
         wave = _multiplied(line, term)[-1]
         name = getattr(getattr(wave.node, "func", None), "id", "")
         if name in ("sin", "cos") and wave.span[1] == term.span[1]:
             turned = (np.sin if name == "sin" else np.cos)(line.siblings[id(wave)][0].value + more)
-            with np.errstate(all="ignore"):
-                value = term.value / wave.value * turned
-            if before is not None:
-                taken = isinstance(sum_.node, ast.BinOp) and isinstance(sum_.node.op, ast.Sub)
-                value = before.value - value if taken else before.value + value
-            start, close = wave.span[0], place.span[1]
-            old, behind = line.source[start:close], line.source[wave.span[1] : close]
-            shown = {"old": old, "new": f"{line.source[start : wave.span[1] - 1]}{behind})"}
-            span = (wave.span[1] - 1, close, f"{behind})")
+            front, behind = _around(line, wave, term)
+            value = _with_last(before, sum_, front * turned * behind)
+            start, inner, close = wave.span[0], wave.span[1] - 1, place.span[1]
+            moved = f"{line.source[inner + 1 : close]})"
+            shown = {"old": line.source[start:close], "new": line.source[start:inner] + moved}
             told = N_("{old} should be {new}")
+            span = (inner, close, moved)
             line.edit(place, value, span, "parentheses", _ENCLOSED, told, shown)
             return
 
@@ -558,32 +579,30 @@ def _laid_open(line: Line, place: Place) -> None:
 
     ``I + m*l**2`` for ``(I + m)*l**2``, ``m*(a + b) + c`` for ``m*(a + b + c)``.
     """
+    start, end = _with_its_own(line, place)
     whole = place
     while whole.above is not None and is_product(whole.above.node):
+        if whole is not place and _with_its_own(line, whole) != whole.span:
+            break  # a product in parentheses of its own
         if isinstance(whole.above.node.op, ast.Div) and whole.role:
             return  # below a line
         whole = whole.above
-    factors = _multiplied(line, whole)
-    at = next((k for k, one in enumerate(factors) if one is place), None)
-    start, end = _with_its_own(line, place)
-    if at is None or whole is place or start == place.span[0]:
+    if whole is place or start == place.span[0]:
         return
-    front = math.prod(one.value for one in factors[:at])
-    with np.errstate(all="ignore"):
-        behind = whole.value / place.value / front
-    above = whole.above.node if whole.above is not None else None
-    taken = isinstance(above, ast.BinOp) and isinstance(above.op, ast.Sub) and whole.role == 1
+    front, behind = _around(line, place, whole)
+    taken = whole.above is not None and _takes_away(whole.above) and whole.role == 1
     turn = -1.0 if taken else 1.0  # what comes out of the parentheses has the sign that it shows
     first, *rest = _terms_of(line, place)
     values, inner = [first[0], *(value for value, _at in rest)], line.segment(place)
     out = [turn * one for one in values]
     opened: list[tuple[Any, str]] = [(front * values[0] + sum(out[1:-1]) + out[-1] * behind, inner)]
+    in_front, is_last = start > whole.span[0], end == whole.span[1]
     for k, (_value, (left, right)) in enumerate(rest, 1):
-        if k > 1 and at and end == whole.span[1]:
+        if k > 1 and in_front and is_last:
             kept = line.source[place.span[0] : left].rstrip()
             last = line.source[left : place.span[1]]
             opened.append((front * sum(values[:k]) + sum(out[k:]), f"({kept}) {last}"))
-        if not at and k < len(rest) and line.source[left] == "+":
+        if not in_front and k < len(rest) and line.source[left] == "+":
             kept = line.source[right : place.span[1]].lstrip()
             moved = f"{line.source[place.span[0] : right]} ({kept})"
             opened.append((values[0] + sum(out[1:k]) + sum(out[k:]) * behind, moved))
@@ -595,11 +614,31 @@ def _laid_open(line: Line, place: Place) -> None:
         line.edit(whole, np.asarray(value), span, "parentheses", _ENCLOSED, told, shown)
 
 
+def _around(line: Line, place: Place, whole: Place) -> tuple[Array, Array]:
+    """What is multiplied in front of a factor of a product, and behind it."""
+    front = behind = np.ones_like(place.value)
+    while place is not whole and place.above is not None:
+        above = place.above
+        if isinstance(above.node, ast.UnaryOp):
+            front = -front
+        else:
+            other = line.siblings[id(above)][1 - place.role].value
+            with np.errstate(all="ignore"):
+                if place.role:
+                    front = other * front
+                elif is_product(above.node) and isinstance(above.node.op, ast.Div):
+                    behind = behind / other
+                else:
+                    behind = behind * other
+        place = above
+    return front, behind
+
+
 def _terms_of(line: Line, place: Place) -> list[tuple[Array, tuple[int, int]]]:
     """The terms of a sum, each with where its sign stands, and where that ends."""
     found: list[tuple[Array, tuple[int, int]]] = []
     while is_sum(place.node):
-        taken = isinstance(place.node, ast.BinOp) and isinstance(place.node.op, ast.Sub)
+        taken = _takes_away(place)
         left, last = line.siblings[id(place)]
         gap = line.source[left.span[1] : last.span[0]]
         sign = left.span[1] + gap.index("-" if taken else "+")
@@ -630,22 +669,20 @@ def _cuts(line: Line, term: Place, begin: int) -> Iterator[tuple[int, Array | fl
     factors = _multiplied(line, term)
     for k, place in enumerate(factors[1:], 1):
         tail = line.source[place.span[0] : term.span[1]]
-        if "/" not in tail and not is_sum(place.node) and tail.count("(") == tail.count(")"):
+        if _is_plain(tail) and not is_sum(place.node):
             inner = np.asarray(math.prod(x.value for x in factors[k:]))
-            with np.errstate(all="ignore"):
-                yield place.span[0], term.value / inner, inner
+            yield place.span[0], _around(line, place, term)[0], inner
 
 
 def _heads(line: Line, term: Place, close: int) -> Iterator[tuple[int, Array, Array | float]]:
     """Where they may end: behind a term, or behind one of its factors; inside, and behind them."""
     yield close, term.value, 1.0
-    inner: Array | float = 1.0
+    inner: Array | float = -1.0 if line.source[term.span[0]] == "-" else 1.0
     for place in _multiplied(line, term)[:-1]:
         end, inner = place.span[1], inner * place.value
         head = line.source[term.span[0] : end]
-        if "/" not in head and not is_sum(place.node) and head.count("(") == head.count(")"):
-            with np.errstate(all="ignore"):
-                yield end, np.asarray(inner), term.value / inner
+        if _is_plain(head) and not is_sum(place.node):
+            yield end, np.asarray(inner), _around(line, place, term)[1]
 
 
 def _plus_for_times(line: Line, place: Place, at: int) -> None:
