@@ -5,6 +5,7 @@ from __future__ import annotations
 import multiprocessing
 import pickle
 import signal
+import sys
 from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import (
@@ -16,7 +17,9 @@ from concurrent.futures import (
     ProcessPoolExecutor,
     wait,
 )
+from contextlib import contextmanager
 from functools import lru_cache
+from multiprocessing import resource_tracker
 from typing import Any
 
 import numpy as np
@@ -102,7 +105,7 @@ def spread(
             broken = False
             try:
                 while waiting and len(running) < pool.in_flight:
-                    running[pool.executor.submit(run_chunk, *arguments(waiting[0]))] = waiting[0]
+                    running[pool.submit(*arguments(waiting[0]))] = waiting[0]
                     waiting.popleft()
             except BrokenExecutor:
                 broken = True
@@ -162,6 +165,11 @@ class Pool:
         # two for each worker: one at work, one ready
         self.in_flight = 2 * known if isinstance(known, int) else _IN_FLIGHT
 
+    def submit(self, *arguments: Any) -> Future[Columns]:
+        """Hands :func:`run_chunk` to the executor; a pool of ours may begin a process for it."""
+        with _interrupts_held(self._own):
+            return self.executor.submit(run_chunk, *arguments)
+
     def renew(self, crashes: int, runs: list[Run]) -> None:
         """Replaces a pool of ours whose worker died.
 
@@ -196,7 +204,21 @@ class Pool:
             process.join()
 
 
+@contextmanager
+def _interrupts_held(own: bool) -> Iterator[None]:
+    """Ctrl-C waits here, and in a process that begins meanwhile: it is deaf while it imports."""
+    if not own or sys.platform == "win32":
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 def _process_pool(workers: int) -> ProcessPoolExecutor:
+    resource_tracker.ensure_running()  # to begin it later would let Ctrl-C through
     # not fork: threads of numba's and Pinocchio's callers do not survive it
     return ProcessPoolExecutor(
         workers, mp_context=multiprocessing.get_context("spawn"), initializer=_begin

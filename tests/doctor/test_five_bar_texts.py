@@ -298,15 +298,15 @@ def test_numbers_for_names_hide_no_two_signs(entry, text) -> None:
     assert found.agrees, str(found)
 
 
-LOOP = "(x - e - l1*cos(theta1))^2 + (y - l1*sin(theta1))^2 - l2^2"
+TURNED_LOOP = "(x - e - l1*cos(theta1))^2 + (y - l1*sin(theta1))^2 - l2^2"
 
 
 @pytest.mark.parametrize(
     "text",
     [
-        f"-({LOOP})",
-        f"2*({LOOP})",
-        f"({LOOP})/l2^2",
+        f"-({TURNED_LOOP})",
+        f"2*({TURNED_LOOP})",
+        f"({TURNED_LOOP})/l2^2",
         "((x - e - l1*cos(theta1))/l2)^2 + ((y - l1*sin(theta1))/l2)^2 - 1",
         "l2 - sqrt((x - e - l1*cos(theta1))^2 + (y - l1*sin(theta1))^2)",
         "(x - e)*cos(theta1) + y*sin(theta1) - ((x - e)^2 + y^2 + l1^2 - l2^2)/(2*l1)",
@@ -321,7 +321,7 @@ def test_the_loop_by_a_constant_or_as_lengths_is_the_same_equation(text) -> None
 
 def test_a_constant_is_one_at_every_five_bar() -> None:
     """l1 for l2 is no constant, though both are equal here."""
-    found = kl.diagnose("equal_links", "loop1", f"2*({LOOP.replace('l2', 'l1')})")
+    found = kl.diagnose("equal_links", "loop1", f"2*({TURNED_LOOP.replace('l2', 'l1')})")
     assert not found.agrees, str(found)
 
 
@@ -352,7 +352,7 @@ def test_a_slip_in_one_working_mode_is_told() -> None:
 
 
 def test_the_e_of_a_number_is_no_name() -> None:
-    found = kl.diagnose("isotropic", "loop1", f"{LOOP} + 1e-4")
+    found = kl.diagnose("isotropic", "loop1", f"{TURNED_LOOP} + 1e-4")
     assert found.sentence == "loop1: the term 1e-4 does not belong there (extra term)"
 
 

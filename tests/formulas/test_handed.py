@@ -799,7 +799,7 @@ def test_a_sentence_that_says_more_is_refused(text) -> None:
 
 
 TAU2_ROD = "(I2 + m2*l2^2/4 + m2*l1*l2/2*c2)*qdd1 + (I2 + m2*l2^2/4)*qdd2 + m2*l1*l2/2*s2*qd1^2 + m2*g*l2/2*c12"
-M22 = "I2 + m2*l2^2/4"
+OF_A_ROD = "I2 + m2*l2^2/4"
 
 
 @pytest.mark.parametrize(
@@ -835,7 +835,7 @@ def test_a_formula_that_is_denied_or_of_something_else_is_refused(robot, entry, 
         ("planar2r", "M12", r"质量矩阵的非对角元：M_{12} = m_2 l_2 (l_2 + l_1 \cos\theta_2)"),
         ("planar2r", "g2", f"Don't forget the gravity term: g2 = {G2}"),
         ("planar2r", "x", f"l1 = 0.5, l2 = 0.4, x = {X}"),
-        ("planar2r_rods", "M22", f"M22 = {M22}, I2 about the centre of mass (not about the joint)"),
+        ("planar2r_rods", "M22", f"M22 = {OF_A_ROD}, I2 about the centre of mass (not about the joint)"),
         ("spatial3r", "y", r"y = a_1\sin\theta_1 + a_2\sin(\theta_1+\theta_2) + xt\cos\theta_3\sin(\theta_1+\theta_2)"),
         ("spatial3r", "x", r"x = a_1\cos\theta_1 + (a_2 + xt\cos\theta_3)\cos(\theta_1+\theta_2) aus der letzten Spalte"),
         ("scara", "M44", "M_{44} = Ia4 + Izz4 + m_4 cx4^2"),

@@ -220,14 +220,14 @@ def test_craigs_last_frame_is_said_to_be_another_than_the_tools(left, said):
     assert any("frame 2 of the table" in one for one in remarks) is said
 
 
-ROWS = ("m2*l2**2 + m2*l1*l2*c2", "m2*l2**2")
+LAST = ("m2*l2**2 + m2*l1*l2*c2", "m2*l2**2")
 
 
 @pytest.mark.parametrize(
     ("entry", "text"),
     [
-        ("mass_matrix", f"[[(m1 + m2)*l1**2 + m2*l2**2 + 2*m2*l1*l2*c2, {ROWS[0]}]]"),
-        ("mass_matrix", f"[[(m1 + m2)*l1**2 + m2*l2**2 + 2*m2*l1*l2*c2], [{ROWS[0]}]]"),
+        ("mass_matrix", f"[[(m1 + m2)*l1**2 + m2*l2**2 + 2*m2*l1*l2*c2, {LAST[0]}]]"),
+        ("mass_matrix", f"[[(m1 + m2)*l1**2 + m2*l2**2 + 2*m2*l1*l2*c2], [{LAST[0]}]]"),
         ("jacobian", "[[-l1*s1 - l2*s12], [l1*c1 + l2*c12]]"),
         ("fk", "[[c12, -s12, 0, l1*c1 + l2*c12], [s12, c12, 0, l1*s1 + l2*s12]]"),
     ],

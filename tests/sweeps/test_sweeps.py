@@ -166,6 +166,15 @@ def test_a_damaged_part_is_worked_out_again(robot, alone, tmp_path, damage):
     assert len(part.read_bytes()) == len(whole)
 
 
+def _in_a_group_of_its_own(script: Path) -> subprocess.Popen[str]:
+    here = Path(__file__).parent
+    path = os.pathsep.join([str(here), str(here.parent), *sys.path])
+    return subprocess.Popen(
+        [sys.executable, str(script)], env={**os.environ, "PYTHONPATH": path},
+        stderr=subprocess.PIPE, text=True, start_new_session=True,
+    )  # fmt: skip
+
+
 @pytest.mark.parametrize("workers", [1, 2])
 @pytest.mark.parametrize("stop", [signal.SIGINT, signal.SIGKILL])
 def test_a_run_that_is_stopped_goes_on(tmp_path, stop, workers):
@@ -180,12 +189,7 @@ def test_a_run_that_is_stopped_goes_on(tmp_path, stop, workers):
         f"    kl.sweep(1.0, sweep_measures.slow, {30 * BLOCK}, lower=[0], upper=[1],\n"
         f"             workers={workers}, chunk=1, folder={str(folder)!r})\n"
     )
-    here = Path(__file__).parent
-    path = os.pathsep.join([str(here), str(here.parent), *sys.path])
-    process = subprocess.Popen(
-        [sys.executable, str(script)], env={**os.environ, "PYTHONPATH": path},
-        stderr=subprocess.PIPE, text=True, start_new_session=True,
-    )  # fmt: skip
+    process = _in_a_group_of_its_own(script)
     while len(part_files(folder) if folder.exists() else ()) < 3:
         assert process.poll() is None, process.stderr.read()
         time.sleep(0.01)
@@ -204,6 +208,30 @@ def test_a_run_that_is_stopped_goes_on(tmp_path, stop, workers):
         resumed["value"], run(sweep_measures.total, 30 * BLOCK, workers=1)["value"]
     )
     assert not list(folder.glob(".*"))  # no half-written file is left
+
+
+def test_a_worker_that_begins_is_silent_too(tmp_path):
+    """Ctrl-C while a worker still imports: the run ends, and the worker prints no traceback."""
+    script, begun = tmp_path / "script.py", tmp_path / "begun"
+    script.write_text(
+        "import pathlib, signal, time, kinlab as kl, sweep_measures\n"
+        "if __name__ == '__main__':\n"
+        "    signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        f"    kl.sweep(1.0, sweep_measures.total, {4 * BLOCK}, lower=[0], upper=[1],\n"
+        "             workers=2, chunk=1)\n"
+        "else:\n"
+        f"    pathlib.Path({str(begun)!r}).touch()\n"
+        "    time.sleep(60)\n"
+    )
+    process = _in_a_group_of_its_own(script)
+    while not begun.exists():
+        assert process.poll() is None, process.stderr.read()
+        time.sleep(0.01)
+    os.killpg(process.pid, signal.SIGINT)
+    stderr = process.communicate()[1]
+    assert process.returncode != 0
+    assert stderr.rstrip().endswith("KeyboardInterrupt")
+    assert stderr.count("Traceback") == 1
 
 
 def test_a_part_that_was_half_written_is_swept_away(tmp_path):

@@ -431,7 +431,7 @@ def left_over(text: str, found: Iterable[tuple[str, str]], names: Iterable[str])
     known = {name.lower() for name in names}
 
     def is_product(word: str) -> bool:  # + mgl*cos(q)
-        letters = known.issuperset(word.lower()) and len(word) <= _LETTERS
+        letters = 0 < len(word) <= _LETTERS and known.issuperset(word.lower())
         return letters and bool(re.search(rf"[-+*/=(·−½⅓¼\d]\s*{re.escape(word)}(?!\w)", text))
 
     left = (one for one in found if one[0].lower() not in known and not is_product(one[0]))

@@ -102,7 +102,7 @@ _SIGNED = 1.1
 """Cost of a sign that has a name for a term without."""
 _OF_NOTHING = 0.06
 """What a term costs more beside a name that is always nought: the name is another."""
-_REST = 1.08
+_SHARE_LEFT = 1.08
 """Cost of ``1 - x`` for a share x."""
 _COUNTS = ("n", "N", "nj", "dof", "ndof")
 """Names of how many joints there are, which nobody takes twice."""
@@ -211,6 +211,8 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     if (summand or listed or trig or below) and not (isinstance(node, ast.Constant) or count):
         passed = isinstance(parent, ast.Return) and not isinstance(node, ast.BinOp)
         counted = isinstance(_leftmost(node), ast.Constant)
+        array = isinstance(node, ast.Call) and called(node) in ("array", "asarray")
+        used = (array or here.field == "elt") and _is_a_term_elsewhere(here)
         for value in (2, 0.5, *([_THRICE] * (isinstance(node, ast.Name) and not trig))):
             named = isinstance(node, ast.BinOp) and not isinstance(node.right, ast.Constant)
             times = chains.without_two(node) if value < 1 else None
@@ -220,10 +222,7 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
             cost = 1.15 if rare else 1.05 + _ODD * (passed or counted)
             cost = _KEPT if _keeps(parent, node) else cost
             cost = _MIXED if value == 2 and _is_mixed(here) else cost
-            typed = isinstance(node, ast.Call) and called(node) in ("array", "asarray")
-            if (typed or here.field == "elt") and _is_a_term_elsewhere(here):
-                cost += _OF_A_LIST
-            yield here.instead(times, "factor", cost)
+            yield here.instead(times, "factor", cost + _OF_A_LIST * used)
         if summand and isinstance(node, ast.Name | ast.Subscript) and scope.divisors & _MILLIMETRES:
             yield here.instead(chains.times(number(1000), node), "factor", _IN_MILLIMETRES)
     if (summand or whole) and not isinstance(node, ast.Constant):
@@ -246,7 +245,7 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
             yield from _supplements(here, scope)
         if isinstance(op, ast.Mult) and isinstance(node, ast.Name) and _is_a_share(node, scope):
             rest = ast.BinOp(number(1), ast.Sub(), node)
-            yield here.instead(rest, "missing term", _REST)
+            yield here.instead(rest, "missing term", _SHARE_LEFT)
         turned = isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub)
         if turned and getattr(node.operand, "id", "") in scope.arcs and scope.pi is not None:
             beyond = ast.BinOp(scope.pi, ast.Sub(), node.operand)
@@ -286,13 +285,10 @@ def _is_a_term_elsewhere(here: Here) -> bool:
     """Whether what a statement sets is a term of a sum: ``return rate - grad``."""
     line = statement_of(here.above)
     target = line.targets[0] if isinstance(line, ast.Assign) else None
-    sums = [x for x in nodes(here.above[0]) if isinstance(x, ast.BinOp) and _is_sum(x.op)]
+    sums = [x for x in nodes(here.above[0]) if isinstance(x, ast.BinOp)
+            and isinstance(x.op, chains.SUMS)]  # fmt: skip
     terms = {getattr(side, "id", "") for x in sums for side in (x.left, x.right)}
     return isinstance(target, ast.Name) and target.id in terms
-
-
-def _is_sum(op: ast.operator) -> bool:
-    return isinstance(op, ast.Add | ast.Sub)
 
 
 def _is_less_the_target(node: ast.expr) -> bool:

@@ -101,14 +101,15 @@ def without_two(node: ast.expr) -> ast.expr | None:
     """A product without its factor 2: ``rate*grad`` of ``rate*2*grad``; None where it has none."""
     first, factors = chain(node, (ast.Mult, ast.Div))
     at = next(
-        (k for k, (op, x) in enumerate(factors) if isinstance(op, ast.Mult) and _is_two(x)), -1
+        (k for k, (op, x) in enumerate(factors) if isinstance(op, ast.Mult) and is_two(x)), -1
     )
-    if factors and at < 0 and _is_two(first) and isinstance(factors[0][0], ast.Mult):
+    if factors and at < 0 and is_two(first) and isinstance(factors[0][0], ast.Mult):
         return joined(factors[0][1], factors[1:])
     return None if at < 0 else joined(first, [*factors[:at], *factors[at + 1 :]])
 
 
-def _is_two(node: ast.expr) -> bool:
+def is_two(node: ast.expr) -> bool:
+    """Whether it is a 2 as it is written."""
     return isinstance(node, ast.Constant) and node.value == 2
 
 

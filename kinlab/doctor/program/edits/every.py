@@ -593,6 +593,7 @@ def _target(
     """Where the value is put."""
     yield from of_keys(here, target, 1.12)
     sizes = observed.shape(target.value) or ()
+    summing = _innermost(here) if isinstance(here.node, ast.AugAssign) else []
     for name in _filled_beside(here, target, observed):
         yield here.within(target, "value", ast.Name(name, ast.Load()), "name", _FILLED)
     for k, (holder, field, key) in enumerate(keys_of(target)):
@@ -611,10 +612,8 @@ def _target(
                 yield here.within(holder, field, plus(key, step), "index", 1.15)
             for other_name in sorted(scope.counting - {*names(key)}):
                 other_key = ast.Name(other_name, ast.Load())
-                summed = isinstance(here.node, ast.AugAssign) and other_name in _innermost(here)
-                yield here.within(
-                    holder, field, other_key, "index", _SUMMED_UP if summed else _COUNTED
-                )
+                cost = _SUMMED_UP if other_name in summing else _COUNTED
+                yield here.within(holder, field, other_key, "index", cost)
             if isinstance(key, ast.Name):  # the entries of all joints before it, too
                 before = ast.Slice(None, plus(key, 1), None)
                 yield here.within(holder, field, before, "index", _ALL_BEFORE)

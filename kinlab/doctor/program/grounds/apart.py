@@ -510,7 +510,7 @@ class _Reader:
         others = [option for option in item.options if not option]  # it may be nothing of the arm's
         if len(of) + len(others) < len(item.options) or len(whose) < 2 or len(first) > 1:
             return item
-        if sum(bool(_close(np.array([first[0][0].value]), x).any()) for x in self.carried) > 1:
+        if self._numbers_like(first[0][0].value) > 1:
             return item
         for k in some[1:]:
             self.tied.setdefault(self.cells[k].which, self.cells[some[0]].which)
@@ -520,17 +520,19 @@ class _Reader:
     def tie_what_has_no_number(self, items: Sequence[_Item]) -> None:
         """Lengths for which a program has the number of another: ``d4 = a2``."""
         named = {k for item in items for option in item.options for _one, k in option}
+        known = {self.cells[k].which for k in named}
+        left = [x for x in self.cells if x.kind == "length" and x.which not in known]
         for item in items:
             of = {k for option in item.options for _one, k in option}
-            if len(of) != 1 or self.cells[first := min(of)].kind != "length":
+            own = self.cells[min(of)] if len(of) == 1 else None
+            if own is None or own.kind != "length" or self._numbers_like(own.value) != 1:
                 continue
-            own = self.cells[first]
-            known = {self.cells[k].which for k in named}
-            alike = [x for x in self.cells if x.kind == "length" and x.which not in known]
-            same = [x for x in alike if _close(np.array([x.value]), own.value).any()]
-            if sum(bool(_close(np.array([own.value]), x).any()) for x in self.carried) == 1:
-                for one in same:
-                    self.tied.setdefault(one.which, self.tied.get(own.which, own.which))
+            for one in (x for x in left if _among([x], own.value)):
+                self.tied.setdefault(one.which, self.tied.get(own.which, own.which))
+
+    def _numbers_like(self, value: float) -> int:
+        """How many of the program's numbers have a value, whatever their sign."""
+        return int(_close(np.array(self.carried), value).sum())
 
     def _is_a_coordinate(self, k: int) -> bool:
         """Whether it is a centre's coordinate as it stands, and no sum with a length."""

@@ -106,7 +106,7 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             if kept is right and isinstance(op, ast.MatMult) and len(matrices[1] or ()) == 1:
                 cost = min(cost, _UNTURNED)
             typed = kept is right and getattr(left, "value", 0) in _HALVES
-            typed = typed or (kept is left and isinstance(op, ast.Div) and _is_two(right))
+            typed = typed or (kept is left and isinstance(op, ast.Div) and chains.is_two(right))
             yield here.instead(kept, "extra factor", _TYPED if typed else cost)
         if isinstance(op, ast.MatMult):
             swapped = chains.exchanged(node, lambda one: observed.shape(one) == ())
@@ -142,7 +142,7 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
                 for other in (ast.Add(), ast.Sub()):
                     yield here.within(node, "op", other, "operator", 1.16)
             square = matrices[1] is not None and len(matrices[1]) == 2
-            if square and _is_two(left):
+            if square and chains.is_two(left):
                 across = ast.Attribute(right, "T", ast.Load())
                 yield here.instead(ast.BinOp(right, ast.Add(), across), "transposed", 1.08)
             if not (
@@ -206,10 +206,6 @@ def _halved(product: ast.expr) -> ast.expr | None:
         return product.right if getattr(product.left, "value", 0) == 2 else None
     rest = _halved(product.left) if isinstance(product.op, ast.MatMult) else None
     return None if rest is None else ast.BinOp(rest, product.op, product.right)
-
-
-def _is_two(node: ast.expr) -> bool:
-    return isinstance(node, ast.Constant) and node.value == 2
 
 
 def _turns_back(matrix: ast.expr, product: ast.expr) -> bool:

@@ -297,7 +297,7 @@ def _opposite(node: ast.expr) -> ast.expr:
     return ast.UnaryOp(ast.USub(), node)
 
 
-_TURNED = 1.14
+_TURNED_AWAY = 1.14
 """Cost of a number along another axis, with the other sign."""
 
 
@@ -315,7 +315,7 @@ def swapped_in(here: Here, row: ast.List | ast.Tuple, observed: Observed) -> Ite
             empty = [is_nothing(one) for one in (row.elts[i], row.elts[j])]
             if any(empty) and not all(empty):  # along another axis, the other way
                 turned = [_opposite(x) if k in (i, j) else x for k, x in enumerate(swapped)]
-                yield here.within(row, "elts", turned, "entries swapped", _TURNED)
+                yield here.within(row, "elts", turned, "entries swapped", _TURNED_AWAY)
 
 
 def _are_halves(row: ast.List | ast.Tuple, observed: Observed) -> bool:
