@@ -286,7 +286,7 @@ def _formula_file(
         judged = file.formulas.keys()
         steps = [x for x in steps if not any(typed.is_name_of(x, other) for other in judged)]
         if last is not None and last.number == 1:
-            steps = [x for x in steps if _of_one_joint(f"{x} = y", key) == f"{x} = y"]
+            steps = [x for x in steps if not _is_its_only_entry(x, key)]
         if steps:
             said = _("not judged: what is given for {names}").format(names=", ".join(steps))
             remarks[key] = "; ".join(filter(None, (remarks.get(key), said)))
@@ -312,15 +312,21 @@ def _of_gravity(text: str, key: str) -> str:
     return f"{dollars}{right.strip(' $&')}{dollars}" if same else text
 
 
-_MASS_MATRIX = re.compile(r"^\s*\$?\s*[MDHB](?:\([^()=]{1,9}\))?\s*=(?=[^=]*[A-Za-z])")
-"""With a formula behind it: ``M = 2.5`` is a mass."""
+_MASS_MATRIX = re.compile(r"\s*\$?\s*[MDHB](?:\([^()=]{1,9}\))?\s*")
+
+
+def _is_its_only_entry(left: str, key: str) -> bool:
+    """Whether a left side is the mass matrix of an arm with one joint, where its entry is asked."""
+    entry = key in ("M11", "mass_matrix[0][0]", "mass_matrix[0]")
+    return entry and bool(_MASS_MATRIX.fullmatch(left))
 
 
 def _of_one_joint(text: str, key: str) -> str:
-    """``M11 = ...`` for ``M = ...``, where an arm has one joint."""
-    if key not in ("M11", "mass_matrix[0][0]", "mass_matrix[0]"):
+    """``M11 = ...`` for ``M = ...``, where an arm has one joint; ``M = 2.5`` is a mass."""
+    left, sign, right = text.partition("=")
+    if not re.search("[A-Za-z]", right.partition("=")[0]) or not _is_its_only_entry(left, key):
         return text
-    return _MASS_MATRIX.sub(lambda left: ("$" if "$" in left[0] else "") + "M11 =", text, count=1)
+    return f"{'$' if '$' in left else ''}M11 {sign}{right}"
 
 
 def _bare_name(name: str) -> str:

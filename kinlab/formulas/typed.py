@@ -616,9 +616,13 @@ def explains_another(line: str, lines: list[str]) -> bool:
         line: an equation.
         lines: all there are.
     """
-    name = joined_up(line.partition("=")[0])
-    pattern = re.compile(rf"(?<![A-Za-z]){re.escape(name)}(?![\d₀-₉])")
-    return any(map(pattern.search, _rights(tuple(lines))))
+    name = line.partition("=")[0]
+    return any(stands_in(name, right) for right in _rights(tuple(lines)))
+
+
+def stands_in(name: str, plain: str) -> bool:
+    """Whether a name, as typed, is used in a text that is joined up."""
+    return bool(re.search(rf"(?<![A-Za-z]){re.escape(joined_up(name))}(?![\d₀-₉])", plain))
 
 
 @lru_cache(maxsize=16)

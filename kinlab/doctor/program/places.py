@@ -204,6 +204,11 @@ def number(value: Any) -> ast.expr:
     return ast.UnaryOp(ast.USub(), ast.Constant(-value)) if value < 0 else ast.Constant(value)
 
 
+def called_with(name: str, *given: ast.expr) -> ast.Call:
+    """A call as it is written: ``max(i, j)``."""
+    return ast.Call(ast.Name(name, ast.Load()), [*given], [])
+
+
 def is_nothing(node: ast.AST) -> bool:
     """Whether it is a zero as it is written."""
     return isinstance(node, ast.Constant) and node.value == 0 and node.value is not False

@@ -21,6 +21,7 @@ from kinlab.formulas.typed import (
     joined_up,
     own_name,
     says_what_it_is,
+    stands_in,
 )
 
 _PROGRAM = re.compile(r"\bdef\b|\blambda\b|\breturn\b|\[\[")
@@ -125,15 +126,11 @@ def steps_beside(text: str, entry: str) -> list[str]:
             one.name
             for one in found
             if _OF_LETTERS.search(one.right)
-            and not any(_stands_in(one.name, right) for right in rights)
+            and not any(stands_in(one.name, right) for right in rights)
             and not is_name_of(one.name, entry)
             and not is_sister(one.name, entry)
         ]
     return []
-
-
-def _stands_in(name: str, plain: str) -> bool:
-    return bool(re.search(rf"(?<![A-Za-z]){re.escape(joined_up(name))}(?!\d)", plain))
 
 
 def _all(text: str) -> list[_Equation]:
@@ -190,7 +187,7 @@ def _explaining(chain: str, others: dict[str, _Equation]) -> list[_Equation]:
     while waiting:
         plain = joined_up(waiting.pop())
         for name, one in others.items():
-            if _stands_in(one.name, plain) and name not in kept:
+            if stands_in(one.name, plain) and name not in kept:
                 kept[name] = one
                 waiting.append(one.right)
     return [*reversed(kept.values())]

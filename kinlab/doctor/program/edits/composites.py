@@ -13,7 +13,7 @@ from kinlab.doctor.program.edits.scope.forms import statement_of
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.whole import plus
 from kinlab.doctor.program.observed import Observed, Shape
-from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, number
+from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, called_with, number
 
 _RATES = ("w", "o", "W", "O")
 """How names of angular velocities begin."""
@@ -243,7 +243,7 @@ def _of_list_from_there_on(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     node = here.node
     if isinstance(node.value, ast.Name) and node.value.id in scope.lists:
         rest = ast.Subscript(node.value, ast.Slice(node.slice, None, None), ast.Load())
-        total = ast.Call(ast.Name("sum", ast.Load()), [rest], [])
+        total = called_with("sum", rest)
         yield here.instead(total, "missing term", 1.16)
 
 
@@ -280,7 +280,7 @@ def _from_there_on(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
     node = here.node
     if len(observed.shape(node.value) or ()) == 1 and not isinstance(node.slice, ast.Slice):
         rest = ast.Subscript(node.value, ast.Slice(node.slice, None, None), ast.Load())
-        total = ast.Call(ast.Name("sum", ast.Load()), [rest], [])
+        total = called_with("sum", rest)
         yield here.instead(total, "missing term", 1.15)
 
 

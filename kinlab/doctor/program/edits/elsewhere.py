@@ -26,6 +26,7 @@ from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import (
     Here,
     ProgramEdit,
+    called_with,
     is_nothing,
     paired,
     with_other,
@@ -190,7 +191,7 @@ class Elsewhere:
         own = called(here.node) if isinstance(here.node, ast.Call) else ""
         for name, asked in self._within.items():
             if asked == shape and name not in (own, outer):
-                call = ast.Call(ast.Name(name, ast.Load()), [here.node], [])
+                call = called_with(name, here.node)
                 yield here.instead(call, "function", _GIVEN if name in beside else _ASKED)
 
     def _by_own_functions(self, here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
@@ -224,7 +225,7 @@ class Elsewhere:
     def _transposed(self, matrix: ast.expr) -> Iterator[ast.expr]:
         for name, role in self._roles.items():
             if role == "transposed":
-                yield ast.Call(ast.Name(name, ast.Load()), [matrix], [])
+                yield called_with(name, matrix)
 
     def _added(self, here: Here, scope: Scope, function: ast.expr) -> Iterator[ProgramEdit]:
         """A vector more, or a moment, by the program's own sum."""

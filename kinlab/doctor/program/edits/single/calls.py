@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from itertools import combinations
 
 from kinlab.doctor.bytecode.syntax import called, names, nodes, pieces, text_of
@@ -12,7 +12,14 @@ from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.operators import DIAGONALS
 from kinlab.doctor.program.edits.single.whole import plus, whole_constant
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, number, root
+from kinlab.doctor.program.places import (
+    ANGLES,
+    Here,
+    ProgramEdit,
+    called_with,
+    number,
+    root,
+)
 
 _AXES = 2
 """Axes of an array of which another may be meant, at least."""
@@ -152,7 +159,7 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
             if other != name and count == len(node.args) and count == scope.functions.get(name):
                 yield here.within(node, "func", ast.Name(other, ast.Load()), "function", 1.1)
             elif other != name and name in scope.functions and 0 < count < len(node.args):
-                fewer = ast.Call(ast.Name(other, ast.Load()), node.args[:count], [])
+                fewer = called_with(other, *node.args[:count])
                 yield here.instead(fewer, "function", _FEWER)
         if scope.functions.get(name, 0) == len(node.args) + 1 and not node.keywords:
             for given in scope.shapes:  # the last one has a default
@@ -338,7 +345,7 @@ def _accumulated(here: Here, name: str) -> Iterator[ProgramEdit]:
     first = node.args[0]
     back_already = isinstance(first, ast.Call) and called(first) == "reversed"
     turned = first.args[0] if back_already else None
-    turned = turned or ast.Call(ast.Name("reversed", ast.Load()), [first], [])
+    turned = turned or called_with("reversed", first)
     sums = ast.Call(node.func, [turned, *node.args[1:]], node.keywords)
     listed = ast.Call(here.node.func, [sums], [])
     yield here.instead(listed, "direction", 1.1)
@@ -368,22 +375,18 @@ def _range(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
                 yield here.within(node, "args", new, "loop", cost)
         yield here.within(node, "args", [ast.Constant(1), args[0]], "loop", 1.2)
         for both in combinations(sorted(around), 2):
-            farther = _larger([ast.Name(one, ast.Load()) for one in both])
+            farther = called_with("max", *(ast.Name(one, ast.Load()) for one in both))
             yield here.within(node, "args", [farther, args[0]], "loop", _FARTHER)
     else:
         counted = {*inner, *scope.whole} if isinstance(args[0], ast.Name) else set[str]()
         for name in sorted(counted - {*names(args[0])}):
-            farther = _larger([args[0], ast.Name(name, ast.Load())])
+            farther = called_with("max", args[0], ast.Name(name, ast.Load()))
             yield here.within(node, "args", [farther, *args[1:]], "loop", _FARTHER)
         yield here.within(node, "args", [args[1]], "loop", 1.25)
         for name in inner:
             load = ast.Name(name, ast.Load())
             yield here.within(node, "args", [load, *args[1:]], "loop", 1.25)
             yield here.within(node, "args", [plus(load, 1), *args[1:]], "loop", 1.25)
-
-
-def _larger(both: Sequence[ast.expr]) -> ast.expr:
-    return ast.Call(ast.Name("max", ast.Load()), [*both], [])
 
 
 def _other_way(here: Here) -> Iterator[ProgramEdit]:

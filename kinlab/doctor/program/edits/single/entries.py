@@ -13,7 +13,7 @@ from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.rows import swapped_in
 from kinlab.doctor.program.edits.single.whole import plus, shifted, value_of, whole_constant
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import Here, ProgramEdit, number
+from kinlab.doctor.program.places import Here, ProgramEdit, called_with, number
 
 _PICKED, _LESS = 1.1, 0.02
 """Cost of one of several indices that are picked out; how much less of the one beside it."""
@@ -91,7 +91,7 @@ def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
                 both = [key, index]
                 if text != text_of(key) and all(isinstance(one, ast.Name) for one in both):
                     for name in ("max", "min") if isinstance(node.ctx, ast.Load) else ():
-                        farther = ast.Call(ast.Name(name, ast.Load()), [*map(copied, both)], [])
+                        farther = called_with(name, *map(copied, both))
                         yield here.within(holder, field, farther, "index", _OF_BOTH)
     _holder, _field, key = keys[0]
     single = len(keys) == 1 and not isinstance(node.slice, ast.Tuple)
