@@ -258,7 +258,7 @@ def _formula_file(
                 )
                 raise refused(f"{place}: {key}", said, name=name)
     entries = {key: solved(value, key, f"{place}: {key}") for key, value in entries.items()}
-    chains = {key: typed.readings(value, key) for key, value in entries.items()}
+    chains = {key: typed.readings(value, key, explained) for key, value in entries.items()}
     entries = {key: parts[0] for key, parts in chains.items()}
     read = partial(_read, place, robot, symbols, writing, whole)
     file, others, broken = read(entries), list[FormulaFile](), ""

@@ -825,21 +825,30 @@ _LINE_ENDS = re.compile(r"^[&\s]+|(?:\\\\(?:\[[\w. ]{0,9}\])?|[&\s]){1,20}$")
 """Between two lines of a chain: ``\\\\`` and ``&``."""
 
 
-def readings(text: str, entry: str) -> list[str]:
+def readings(text: str, entry: str, given: Container[str] = ()) -> list[str]:
     r"""The equations in a chain of equalities, each with one formula, the last one first.
 
     ``M_{12} = M_{21} = ...`` is one, ``g2 = m2*g*l2*c12 = 5.886*c12`` is two; of ``J_{11} =
     \frac{\partial x}{\partial\theta_1} = ...`` the derivative is left out. ``a \pm b`` is two.
+
+    Args:
+        text: as typed.
+        entry: what it is asked for.
+        given: names that are explained: ``L = T - V = ...`` is two where T and V are.
     """
     if entry.startswith(_OF_TWO_SOLUTIONS) and _EITHER.search(text):
-        return [one for both in _either(text) for one in readings(both, entry)]
+        return [one for both in _either(text) for one in readings(both, entry, given)]
     parts = [_LINE_ENDS.sub("", part) for part in bare(text).split("=")]
     dollars = "$" if is_latex(text) else ""
     if _EQUATION.fullmatch(entry) and len(parts) == 2 and all(parts) and parts[0] != entry:
         return [f"{dollars}{part}{dollars}" for part in reversed(parts)]
     if not 2 <= len(parts) <= _LONGEST_CHAIN or any(part[-1:] in ("", *"<>!") for part in parts):
         return [text]
-    named = [is_name(one) and not (k and _is_formula_of(one, entry)) for k, one in enumerate(parts)]
+    rests = [k > 0 and _rests_on(one, given) for k, one in enumerate(parts)]
+    named = [
+        is_name(one) and not rests[k] and not (k and _is_formula_of(one, entry))
+        for k, one in enumerate(parts)
+    ]
     names = [part for part, is_one in zip(parts, named, strict=True) if is_one]
     formulas = [part for part in parts if part not in names] or parts[-1:]
     left = next((name for name in names if begins_with(f"{name} =", entry)), "")
@@ -853,9 +862,18 @@ def readings(text: str, entry: str) -> list[str]:
     alone = len(parts) == 2 and (names or not _is_formula(parts[0]))
     if alone or strange or several:
         return [text]
-    formulas = [one for one in formulas if not says_what_it_is(one)] or formulas[-1:]
+    told = [one for one, known in zip(parts, rests, strict=True) if known]
+    formulas = [x for x in formulas if x in told or not says_what_it_is(x)] or formulas[-1:]
     left = f"{left or names[0]} = " if names else ""
     return [f"{dollars}{left}{formula}{dollars}" for formula in reversed(formulas)]
+
+
+def _rests_on(part: str, given: Container[str]) -> bool:
+    """Whether a part is made of explained names alone: ``h``, ``T - V``."""
+    with suppress(ExpressionError):
+        found = [own_name(one.strip()) for one in re.split(r"\s*[-−+]\s*", part.strip("&$ ."))]
+        return all(one in given for one in found)
+    return False
 
 
 def _is_of_two_lines(part: str) -> bool:
@@ -1074,6 +1092,8 @@ def _equations(text: str) -> list[str]:
     for line in lines:
         first, *behind = [_EDGES.sub("", x) for piece in line for x in _WHERE.split(piece)]
         found += [one.rstrip(": ") for one in (*behind, first)]
+    # of $x = ...$ and $J = ...$ on a line each the dollars between them are left
+    found = [one.replace("$", "") if one.count("$") == 1 else one for one in found]
     return [line for line in found if line]
 
 
@@ -1112,7 +1132,8 @@ def entry_name(text: str, place: str = "expression", writing: Hand | None = None
         return "det J"
     if name := plain_name(whole) or plain_name(typed) or _range_name(typed):
         return name
-    slope = _DERIVATIVE.fullmatch(unicodedata.normalize("NFKC", typed))
+    plain = _SLOPE.sub(r"d\1/dq\2", unicodedata.normalize("NFKC", typed))
+    slope = _DERIVATIVE.fullmatch(plain)
     if slope or "∂" in typed:
         return f"{_DERIVED[slope[1]]}{slope[2]}" if slope else typed
     named = _NAMED.fullmatch(typed)
@@ -1204,6 +1225,14 @@ _SPEED_SQUARED = re.compile(r"\\?\|?v(?:_\{?\w{1,3}\}?)?\|?\s*(?:(?:\^|\*\*)\s*\
 _PLACES = re.compile(r"(\D+?)[_\[]?([\d,]*)\]?", re.ASCII)
 
 
+_OF_A_POINT = ("x", "y", "z", "px", "py", "pz", "p_x", "p_y", "p_z")
+_OF_NO_POINT = (
+    "j", "jacobian", "planar_jacobian", "m", "mass_matrix", "c", "coriolis_matrix", "g",
+    "gravity_torques", "tau", "inverse_dynamics", "statics", "v", "t", "l", "det",
+)  # fmt: skip
+"""Entries before which no coordinate stands: ``x = ...`` is no entry of the Jacobian."""
+
+
 def of_one_name(left: str, name: str) -> bool:
     """Whether a left side may stand before an entry: G2 and phi_2 before g2, tau before tau1.
 
@@ -1220,7 +1249,8 @@ def of_one_name(left: str, name: str) -> bool:
         whole = all(":" in place for place in wanted.split(",")) and not part
         return whole and (head == mine or any(mine in group for group in known))
     if not known and not places and head != mine:
-        return True
+        pose = mine == "t" and wanted != ""
+        return head not in _OF_A_POINT or mine not in _OF_NO_POINT or pose
     if places != wanted and (places or wanted not in ("", "1")):
         return False
     if {mine, head} <= {*_POSES, "r"} and (mine == "r" or _ROTATION.fullmatch(places)):

@@ -13,6 +13,7 @@ from kinlab.formulas.handed.rates import MOVING, plain_rates
 from kinlab.formulas.handed.units import with_units_inside, without_units
 from kinlab.formulas.language.clauses import Holds, without_clauses
 from kinlab.formulas.language.prose import doubtful
+from kinlab.formulas.language.sentences import sides_left_out
 from kinlab.formulas.language.words import (
     refuse_comments,
     without_remark_behind,
@@ -102,6 +103,13 @@ _ABBREVIATED = re.compile(
     r"|\[\s*(?P<squared>\\?[A-Za-z]_?\{?[\w,]{1,5}\}?\s*=[^\n\[\]]*)\])\s*\.?\s*$",
     re.IGNORECASE,
 )
+_NAMED = r"\$?\\?[A-Za-zα-ωΑ-Ω]{1,6}_?\{?[\w,]{0,5}\}?\s{0,3}:?=(?!=)"
+_USED = re.compile(
+    r"\s*\(\s*(?:using|with|where|since|as|because|mit|da|wobei|设|其中|因为|由于|代入|用)[ :：]*"
+    rf"(?P<given>{_NAMED}[^()=\n]{{1,40}})\)"
+    r"(?=\s*(?:\\\\\s*)?&?\s*=)"
+)
+"""A definition in parentheses between two sides of an equation."""
 _DEFINED = re.compile(r"[ \t]{0,9}(?::\s?=|\\coloneqq(?![A-Za-z]))(?!=)\s*")
 _OF_MAPLE = re.compile(r"(?<![\w.])([A-Za-z]\w*)\[\s*([1-9])\s*(?:,\s*([1-9])\s*)?\](?=\s*:=)")
 _OF_TIME = re.compile(r"(?<![\w.])(?:q|th|theta|θ)\[\s*[1-9]\s*\]\s*\(\s*t\s*\)")
@@ -124,7 +132,6 @@ _GREEK_ANGLE = re.compile(r"(?<![A-Za-z])(sin|cos|tan)([θϑφϕ](?:[₁-₉]|[1
 """A function with its angle, and nothing between: ``cosθ2``."""
 _MAPLES = re.compile(r":(?=\s*(?:$|\n|[A-Za-z]\w{0,20}(?:\[[\d,\s]{1,5}\])?\s*:=))")
 """A colon that ends a statement of Maple's."""
-_NAMED = r"\$?\\?[A-Za-zα-ωΑ-Ω]{1,6}_?\{?[\w,]{0,5}\}?\s{0,3}:?=(?!=)"
 _WHERE = re.compile(
     rf"(?<!\w)(?:avec|con|com|donde|dove|où|onde|где|ただし)(?=\s+{_NAMED})", re.IGNORECASE
 )
@@ -152,10 +159,17 @@ _FOLLOWS = re.compile(
 """What follows from what stands before is an equation of its own."""
 _AT = r"(?!\$?\\?(?:q|theta|vartheta|θ|th)_?\{?[\d₀-₉]?\}?\s{0,9}=\s{0,9}[-+±]?\s?[\dπ\\])"
 """No state: ``so q2 = 0 is singular``."""
+_SLOPE = (
+    r"\$?(?:[d∂]\s?[A-Za-z]\w{0,5}\s?/\s?[d∂]\s?\\?\w{1,9}"
+    r"|\\d?frac\s?\{\s?(?:\\partial|∂|d)\s?\w{1,6}\s?\}\s?\{[^{}=]{1,20}(?:\{\w\})?\s?\})\s{0,3}="
+)
+"""A derivative in front of a sign of equality."""
+_OF_PLACE = re.compile(r"(∂|\\partial\s?|(?<![A-Za-z])d)p_?\{?([xyz])\}?(?=\s?/|\s?\}\s?\{)")
+"""The derivative of a coordinate with p in its name: ``∂p_x/∂q2``."""
 _HENCE = re.compile(
     r"(?<=\S)(?<!\([a-z]\))(?<!^\w\))\s{0,9}[.,;]?\s{1,9}(?:hence|so|thus|therefore|then|(?:it\s+follows|we\s+find)\s+that"
     r"|we\s+get|donc|alors|also|daher|somit|folglich|damit|quindi|dunque|luego|entonces|por\s+tanto)"
-    rf"\s{{0,9}}[,:]?\s{{1,9}}{_AT}(?={_NAMED})"
+    rf"\s{{0,9}}[,:]?\s{{1,9}}{_AT}(?={_NAMED}|{_SLOPE})"
     rf"|(?<=\S)[,，。;；]?\s{{0,9}}(?:因此|所以|于是|したがって|従って|ゆえに|よって)[,，]?\s{{0,9}}{_AT}(?={_NAMED})",
     re.IGNORECASE,
 )
@@ -197,7 +211,7 @@ def as_formula(
     unjudged = _("the step {words!r} was not judged")
     steps = [unjudged.format(words=one[0].strip("=& ")) for one in STEP.finditer(text)]
     text, label = _without_label(_MIRRORED.sub("", _as_asked(_unlisted(of_packages(text)), entry)))
-    text = _HENCE.sub("\n", without_prompts(without_gaps(text)))
+    text = _HENCE.sub("\n", without_prompts(without_gaps(_OF_PLACE.sub(r"\1\2", text))))
     text = _BOLD_SIDES.sub(lambda found: found[1] or f" {found[2]}", text)
     text = _BULLET.sub("", text)
     text = written_out(with_definitions(text), place)
@@ -235,7 +249,9 @@ def as_formula(
     text = without_remark_behind(text, place)
     text = without_code(text, not several and bool(_ALONE.fullmatch(entry)))
     text = undressed(text, entry)
-    text = without_words(text, entry, place)
+    text = _behind(text)
+    whole, text = text, without_words(text, entry, place)
+    steps += [unjudged.format(words=f"= {one}") for one in sides_left_out(whole, text)]
     text = plain_rates(text)
     text, said = without_constant(without_units(text, entry, place), entry)
     return (
@@ -354,6 +370,14 @@ def _of_gravity(found: re.Match[str]) -> str:
 def _without_brackets(found: re.Match[str]) -> str:
     """``m1`` of ``m[1]``, ``theta2(t)`` of ``theta[2](t)``."""
     return f"{found[1]}{found[2]}{'(t)' if found[0].endswith(')') else ''}"
+
+
+def _behind(text: str) -> str:
+    """``a (using l_c = l/2) = b`` as ``a = b where l_c = l/2``."""
+    given = [found["given"].strip() for found in _USED.finditer(text)]
+    if not given or text.count("$"):
+        return text
+    return f"{_USED.sub('', text)} where {'; '.join(given)}"
 
 
 def _where(found: re.Match[str]) -> str:

@@ -13,7 +13,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 
 from kinlab.formulas.language.sentences import is_word
-from kinlab.formulas.language.vocabulary import CHINESE, LATIN
+from kinlab.formulas.language.vocabulary import CHINESE, LATIN, is_linking
 from kinlab.formulas.typed import (
     begins_with,
     is_name_of,
@@ -35,7 +35,7 @@ _LINES = re.compile(
 )
 """Where one step ends and another begins; words in LaTeX."""
 _GAPS = re.compile(r"\\[,;:! ]")
-_LETTER = r"(?:\\?[A-Za-z]{1,8}|[α-ωΑ-Ω𝜃𝜏])"
+_LETTER = r"(?:\\?[A-Za-z]{1,16}|[α-ωΑ-Ω𝜃𝜏])"
 _INDEX = r"(?:_?\d{1,3}(?:,\d)?|[₀-₉]{1,3}|_?\{[^{}=\n]{1,12}\}|_[A-Za-z]\d?)"
 _NAMED = re.compile(
     rf"(?<![\w\\}}\])])(?P<name>(?:\\d?dot\s*\{{?\s*)?{_LETTER}[̇̈]?\}}?{_INDEX}?"
@@ -129,6 +129,7 @@ def steps_beside(text: str, entry: str) -> list[str]:
             and not any(stands_in(one.name, right) for right in rights)
             and not is_name_of(one.name, entry)
             and not is_sister(one.name, entry)
+            and not (len(one.name) > 1 and is_linking(one.name))
         ]
     return []
 

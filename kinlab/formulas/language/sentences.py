@@ -10,7 +10,13 @@ from __future__ import annotations
 import re
 
 from kinlab.formulas.language.prose import MATHS, is_condition
-from kinlab.formulas.language.vocabulary import CHINESE, LATIN, is_listed, is_program
+from kinlab.formulas.language.vocabulary import (
+    CHINESE,
+    LATIN,
+    is_linking,
+    is_listed,
+    is_program,
+)
 from kinlab.formulas.signs.brackets import parts_at
 from kinlab.formulas.typed import (
     begins_with,
@@ -106,23 +112,13 @@ def without_sentences(text: str, entry: str) -> str:
     """
     if _PROGRAM.search(text) or len(_WORD.findall(text)) > _MOST:
         return text
-    text = _DENOTES.sub(r"\1 = ", _DENOTES_IN_MATHS.sub(r"\1 = ", text))
-    text = _ABOUT.sub(" ", _COMMENT.sub("", text))
-    opened = _FONT.sub(lambda found: _opened(found, text), text)
-    marked = _marked(opened)
-    if _GAP not in marked and MATHS.search(opened) and "=" in MATHS.sub(" ", opened):
-        lines = MATHS.sub(lambda found: f";\n{_bare(found[0])};\n", opened).split(";\n")
+    text, marked = _without_words(text)
+    if _GAP not in marked and MATHS.search(marked) and "=" in MATHS.sub(" ", marked):
+        lines = MATHS.sub(lambda found: f";\n{_bare(found[0])};\n", marked).split(";\n")
         return f"${';'.join(line.strip() for line in lines if line.strip())}$"
     if _GAP not in marked and len(MATHS.findall(text)) < 2:
         return text
-    *spoken, ending = marked.split(_GAP)
-    parts = [
-        one
-        for part in [*(_SUBJECT.sub(r"\1", part) for part in spoken), ending]
-        for one in re.split(r"(?<=\$)\s*[\n,;]\s*(?=\$)", part)
-    ]
-    pieces = [piece for part in parts for piece in _apart(part)]
-    pieces = [piece for piece in pieces if piece]
+    pieces = _pieces(marked)
     dollars = any(mark in piece for piece in pieces for mark in ("$", r"\[", r"\("))
     pieces = [_bare(_BEHIND_DOLLARS.sub("", piece)) for piece in pieces]
     kept = _of_entry([piece for piece in pieces if piece], entry)
@@ -130,6 +126,86 @@ def without_sentences(text: str, entry: str) -> str:
         return text
     told = ";\n".join(kept)
     return f"${told}$" if dollars else told
+
+
+def sides_left_out(text: str, kept: str) -> list[str]:
+    """Sides of equations that have words for a name: ``V = ..., its derivative = ...``.
+
+    Args:
+        text: as typed.
+        kept: what :func:`without_sentences` has of it.
+    """
+    if text.count("=") < 2 or text == kept or _PROGRAM.search(text):
+        return []
+    pieces = [_bare(piece) for piece in _pieces(_without_words(text)[1])]
+    judged = {_plain(side) for one in re.split(r"[;\n]", kept) for side in one.split("=")}
+    found = []
+    for left, *sides in (piece.split("=") for piece in pieces):
+        name = left.strip("& ,:").rpartition(" ")[2]
+        if not name or (len(name) > 1 and (is_listed(name) or _is_said(name))):
+            found += [one.strip() for one in sides if _plain(one) not in judged]
+    return [one for one in found if one]
+
+
+def _without_words(text: str) -> tuple[str, str]:
+    """A text with the sides of its equations joined, and the same with a mark for each word."""
+    text = _DENOTES.sub(r"\1 = ", _DENOTES_IN_MATHS.sub(r"\1 = ", text))
+    text = _ABOUT.sub(" ", _COMMENT.sub("", text))
+    opened = _FONT.sub(lambda found: _opened(found, text), text)
+    joined = _joined(opened)
+    return text if joined == opened else joined, _marked(joined)
+
+
+def _pieces(marked: str) -> list[str]:
+    """What stands between words."""
+    *spoken, ending = marked.split(_GAP)
+    parts = [
+        one
+        for part in [*(_SUBJECT.sub(r"\1", part) for part in spoken), ending]
+        for one in re.split(r"(?<=\$)\s*[\n,;]\s*(?=\$)", part)
+    ]
+    return [piece for part in parts for piece in _apart(part) if piece]
+
+
+_SIGN = re.compile(r"\$?\s*&?\s*(?<![<>=!:])=(?!=)")
+_IN_BRACKETS = re.compile(
+    rf"(?P<dollar>\$?)\s*[(（\[]\s*(?P<words>[{LATIN}{CHINESE}'’ .,-]{{2,60}})[)）\]]"
+    r"[\s,;:，；：]*$"
+)
+_BEFORE = re.compile(
+    rf"(?P<dollar>\$?)[\s,;.，；。]*(?P<words>(?:[{CHINESE}]+|(?<![{LATIN}\w\\])[{LATIN}][{LATIN}.'’-]*)"
+    rf"(?:[\s,，]+[{LATIN}][{LATIN}.'’-]*|[\s,，]*[{CHINESE}]+)*)[\s,:，：]*$"
+)
+_SIDES_AT_MOST, _NEAR = 40, 120
+"""Signs of equality of a text with words between them; letters of these at most."""
+_OTHERWISE = re.compile(r"deriv|differen|ableit|abgeleitet|导|微分|求偏", re.IGNORECASE)
+"""What makes another quantity of it."""
+
+
+def _joined(text: str) -> str:
+    """The text without what stands between two sides of one equation: ``= a (Steiner) = b``."""
+    signs = [*_SIGN.finditer(text)]
+    for sign in reversed(signs if len(signs) <= _SIDES_AT_MOST else []):
+        front = text[: sign.start()]
+        near = max(0, len(front) - _NEAR)
+        found = _IN_BRACKETS.search(front, near) or _BEFORE.search(front, near)
+        if found is None or not _ends_formula(front[: found.start()].rstrip("$ ")):
+            continue
+        words = re.findall(rf"[{LATIN}][{LATIN}.'’-]*|[{CHINESE}]+", found["words"])
+        bracketed = front[found.start() :].lstrip("$ \n\t")[:1] in ("(", "（", "[")
+        said = all(_is_said(x) for x in words) if bracketed else all(map(is_linking, words))
+        if words and said and not _OTHERWISE.search(found["words"]):
+            dollars = found["dollar"] + ("$" if sign[0].startswith("$") else "")
+            rest = text[sign.start() :].lstrip("$") if dollars else text[sign.start() :]
+            text = f"{front[: found.start()]}{'$' if dollars == '$' else ''} {rest}"
+    return text
+
+
+def _is_said(word: str) -> bool:
+    """Whether letters in brackets, or in front of a sign of equality, are a word and no name."""
+    if not re.fullmatch(rf"[{LATIN}{CHINESE}'’.-]+", word) or is_program(word):
+        return False
+    return "\u4e00" <= word[0] <= "\u9fff" or is_listed(word) or len(word) >= _LONG
 
 
 def _opened(found: re.Match[str], text: str) -> str:

@@ -39,12 +39,22 @@ def says_nothing(word: str, entry: str) -> bool:
 
 def chinese_left(text: str, entry: str) -> str:
     """What of a run of Chinese is in no list; empty where all is."""
-    told = _known(entry, "chinese")
+    return _not_made_of(text, _known(entry, "chinese"))
+
+
+def _not_made_of(text: str, told: frozenset[str]) -> str:
+    """What of a run of Chinese no words of a list make up; empty where they do."""
     reach = [True] + [False] * len(text)
     for end in range(1, len(text) + 1):
         begins = range(max(0, end - _LONGEST), end)
         reach[end] = any(reach[start] and text[start:end] in told for start in begins)
     return "" if reach[-1] else text[max(k for k, one in enumerate(reach) if one) :]
+
+
+def is_linking(word: str) -> bool:
+    """Whether a word stands between two sides of one equation: ``a, that is = b``."""
+    told = _linking()
+    return word.lower().strip(".") in told or not _not_made_of(word, told)
 
 
 def is_listed(word: str) -> bool:
@@ -62,6 +72,11 @@ def _every() -> frozenset[str]:
     lists = _lists()
     told = [lists["anywhere"][key] for key in ("english", "german", "romance")]
     return frozenset(" ".join([*told, *(one["words"] for one in lists["of"])]).split())
+
+
+@cache
+def _linking() -> frozenset[str]:
+    return frozenset(_lists()["anywhere"]["linking"].split())
 
 
 @cache

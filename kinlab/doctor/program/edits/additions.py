@@ -104,6 +104,8 @@ _OF_NOTHING = 0.06
 """What a term costs more beside a name that is always nought: the name is another."""
 _SHARE_LEFT = 1.08
 """Cost of ``1 - x`` for a share x."""
+_DIFFERENCE = 1.1
+"""Cost of the same entry of another row, taken from the one that stands there."""
 _COUNTS = ("n", "N", "nj", "dof", "ndof")
 """Names of how many joints there are, which nobody takes twice."""
 _THRICE = 3
@@ -724,6 +726,7 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
         across = (scope.addends.get(one, set()) for one in _of_the_other_axis(stem))
         yield from _turned_terms(here, scope, siblings.union(*across if whole else ()))
         yield from _terms_of_others(here, scope, siblings)
+        yield from _other_of_two(here, scope)
     for text, piece in scope.pieces_here(shape).items():
         named = isinstance(piece, ast.Name | ast.Subscript)
         one = isinstance(piece, ast.Call) and called(piece) == "eye"
@@ -771,6 +774,17 @@ def _turned_terms(here: Here, scope: Scope, siblings: set[str]) -> Iterator[Prog
         if turned != text and turned not in own and isinstance(piece, ast.BinOp):
             for op, cost in ((ast.Add(), 1.1), (ast.Sub(), 1.12)):
                 yield here.instead(ast.BinOp(here.node, op, piece), "missing term", cost)
+
+
+def _other_of_two(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """The other half of a difference: ``T[i, k] - T[j, k]`` for ``T[i, k]``."""
+    keys = getattr(getattr(here.node, "slice", None), "elts", [])
+    counters = [one.id for one in keys if isinstance(one, ast.Name) and one.id in scope.counters]
+    for own in counters if len(keys) > 1 else ():
+        for other in sorted({*scope.counters} - {*counters}):
+            new = OtherName(own, other).visit(copied(here.node))
+            for op, cost in ((ast.Sub(), _DIFFERENCE), (ast.Add(), _DIFFERENCE + 0.02)):
+                yield here.instead(ast.BinOp(here.node, op, new), "missing term", cost)
 
 
 def _terms_of_others(here: Here, scope: Scope, siblings: set[str]) -> Iterator[ProgramEdit]:

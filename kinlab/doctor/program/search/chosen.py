@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -13,6 +13,7 @@ from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import nodes, text_of
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.glossary.textbook import Glossary
+from kinlab.doctor.linkages.five_bar import numbers_of
 from kinlab.doctor.program.edits.every import edits
 from kinlab.doctor.program.edits.numbers.as_the_arm import as_it_is, of_table
 from kinlab.doctor.program.edits.numbers.data import is_gravity
@@ -31,12 +32,16 @@ from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit
 from kinlab.doctor.program.search.asked import Asked
 from kinlab.doctor.program.trial import Trial
+from kinlab.fivebar import FiveBar
+from kinlab.symbolic.vocabulary import vocabulary
 from kinlab.tolerances import TOLERANCES
 
 _MADE = 0.86
 """Cost of an exchange after which a row is the robot's."""
 _AGAIN = 0.08
 """What a term costs more that a sum has already."""
+_MISNAMED = 0.1
+"""What it costs more that names that have the robot's numbers are given each other's."""
 _OF_SUM = 0.02
 """What the other sign of a sum costs more, of which each term has its own."""
 _TURNED = 0.05
@@ -91,6 +96,8 @@ def chosen(
     signs = ((x, _of_sign(x, observed, robot)) for x in every)
     every = [x if cost == x.cost else replace(x, cost=cost) for x, cost in signs]
     every = [replace(x, cost=x.cost + _AGAIN) if _adds_again(x) else x for x in every]
+    named = _values_of_names(robot)
+    every = [replace(x, cost=x.cost + _MISNAMED) if _takes(x, named) else x for x in every]
     every = sorted(every, key=_at_best)[:most]
     weigh = dimensions.against
     return [replace(x, cost=x.cost + more) if (more := weigh(x)) else x for x in every]
@@ -102,6 +109,23 @@ def _adds_again(edit: ProgramEdit) -> bool:
     if edit.kind != "missing term" or not isinstance(new, ast.BinOp):
         return False
     return text_of(new.right) in map(text_of, summands(new.left))
+
+
+def _values_of_names(robot: Any) -> Mapping[str, float]:
+    """What the robot's numbers are, by the names that they have in formulas."""
+    if isinstance(robot, FiveBar):
+        return numbers_of(robot)
+    table = table_of(robot)
+    return {} if table is None else vocabulary(table).values
+
+
+def _takes(edit: ProgramEdit, named: Mapping[str, float]) -> bool:
+    """Whether names that have the robot's numbers would be given each other's: l1, l2."""
+    if edit.kind != "entries swapped" or edit.part != DATA or edit.place:
+        return False
+    fields = [one.field for one in edit.changes if isinstance(one.holder, dict)]
+    held = [(named.get(field), edit.changes[0].holder.get(field)) for field in fields]
+    return bool(held) and all(own is not None and own == value for own, value in held)
 
 
 def turns_a_length(edit: ProgramEdit, observed: Observed, robot: Any) -> bool:

@@ -36,6 +36,8 @@ _ADDEND = 1.06
 """Cost of one of two that a name is the sum of: the joint's rate for the link's."""
 _IDLE = 1.03
 """Cost of a vector, or a matrix, that is set and used nowhere for another: ``force``."""
+_IDLE_NUMBER = 1.06
+"""The same of a number that moves: ``w`` of ``w += rate``."""
 _IN_LINE = 1.12
 """Cost of a name for another that stands in the same line."""
 
@@ -75,7 +77,9 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
                 cost = _HALF
             if other == across and {other, node.id} <= scope.sines:
                 kind, cost = "sin/cos", 1.04
-            cost = min(cost, _IDLE) if shape and other in scope.unused else cost
+            if other in scope.unused:
+                idle = _IDLE if shape else cost if scope.level_of(other) else _IDLE_NUMBER
+                cost = min(cost, idle)
             yield here.instead(ast.Name(other, ast.Load()), kind, cost)
     if shape == ():
         yield from _entries_beside(here, scope)
