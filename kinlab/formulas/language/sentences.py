@@ -129,7 +129,9 @@ def without_sentences(text: str, entry: str) -> str:
 
 
 def sides_left_out(text: str, kept: str) -> list[str]:
-    """Sides of equations that have words for a name: ``V = ..., its derivative = ...``.
+    """Sides of equations with words, or a derivative, in place of a name.
+
+    ``V = ..., its derivative = ...``
 
     Args:
         text: as typed.
@@ -140,11 +142,18 @@ def sides_left_out(text: str, kept: str) -> list[str]:
     pieces = [_bare(piece) for piece in _pieces(_without_words(text)[1])]
     judged = {_plain(side) for one in re.split(r"[;\n]", kept) for side in one.split("=")}
     found = []
-    for left, *sides in (piece.split("=") for piece in pieces):
+    for left, *sides in (one.split("=") for piece in pieces for one in _equations(piece)):
         name = left.strip("& ,:").rpartition(" ")[2]
-        if not name or (len(name) > 1 and (is_listed(name) or _is_said(name))):
+        word = len(name) > 1 and (is_listed(name) or _is_said(name))
+        if not name or word or _OF_A_STEP.search(left):
             found += [one.strip() for one in sides if _plain(one) not in judged]
     return [one for one in found if one]
+
+
+_OF_A_STEP = re.compile(
+    r"d\s?/\s?d\s?t|∂|\\partial|\\frac\s?\{\s?(?:\\mathrm\s?\{\s?)?d|\bd\w+\s?/\s?d\w"
+)
+"""A derivative."""
 
 
 def _without_words(text: str) -> tuple[str, str]:

@@ -69,7 +69,7 @@ def _of_the_other_case(part: int, node: ast.If, scope: Scope) -> Iterator[Progra
             for other in [*dict.fromkeys((*together, *numbers))][:_NAMES]:
                 if other != own[0] and other not in given:
                     new = OtherName(own[0], other).visit(copied(line))
-                    yield _missing(part, node, name, block, 0, new, 1.12)
+                    yield line_more(part, node, name, block, 0, new, 1.12)
 
 
 def _in_both_cases(part: int, node: ast.If) -> Iterator[ProgramEdit]:
@@ -192,7 +192,9 @@ def _updates(
             for new in ways:
                 line = ast.Assign([ast.Name(name, ast.Store())], new)
                 block = [*loop.body]
-                yield _missing(part, loop, "body", block, len(block), line, 1.05 if fresh else 1.18)
+                yield line_more(
+                    part, loop, "body", block, len(block), line, 1.05 if fresh else 1.18
+                )
 
 
 def _steps_left_out(
@@ -218,7 +220,7 @@ def _steps_left_out(
                 if block and at:
                     term = ast.BinOp(ast.Name(name, ast.Load()), ast.Add(), copied(piece))
                     line = ast.Assign([ast.Name(name, ast.Store())], term)
-                    yield _missing(part, node, field, block, at, line, _LEFT_OUT)
+                    yield line_more(part, node, field, block, at, line, _LEFT_OUT)
 
 
 def _terms_of_steps(name: str, shape: Shape, scope: Scope) -> Iterator[ast.expr]:
@@ -241,10 +243,10 @@ def _added(
 ) -> ProgramEdit:
     """``angle += q[i]`` in a loop."""
     line = ast.AugAssign(ast.Name(name, ast.Store()), ast.Add(), piece)
-    return _missing(part, loop, "body", loop.body, at, line, cost)
+    return line_more(part, loop, "body", loop.body, at, line, cost)
 
 
-def _missing(
+def line_more(
     part: int,
     node: ast.AST,
     field: str,
@@ -275,7 +277,7 @@ def _beside(
         others = [OtherAxis(scope.shapes).visit(copied(line))]
         if isinstance(target, ast.Subscript):
             if (mirror := _mirrored(target)) is not None:
-                yield _missing(part, node, name, block, at + 1, mirror, 1.08)
+                yield line_more(part, node, name, block, at + 1, mirror, 1.08)
             others += [*_of_other_entries(line, scope)]
             others += [_Stepped(step, scope.shapes).visit(copied(line)) for step in (1, -1)]
         for other in others:
@@ -283,11 +285,11 @@ def _beside(
             text = ast.unparse(own)
             if text in targets or (isinstance(own, ast.Name) and text not in scope.shapes):
                 continue
-            yield _missing(part, node, name, block, at + 1, other, 1.15)
+            yield line_more(part, node, name, block, at + 1, other, 1.15)
             if isinstance(own, ast.Subscript):
                 turned = copied(other)
                 turned.value = ast.UnaryOp(ast.USub(), turned.value)
-                yield _missing(part, node, name, block, at + 1, turned, 1.16)
+                yield line_more(part, node, name, block, at + 1, turned, 1.16)
 
 
 def _never_filled(tree: ast.FunctionDef) -> list[str]:
@@ -320,7 +322,7 @@ def _filling(
                 own = copied(target)
                 own.value = ast.Name(other, ast.Load())
                 new = ast.Assign([own], copied(vector))
-                yield _missing(part, node, name, block, at + 1, new, _NEVER)
+                yield line_more(part, node, name, block, at + 1, new, _NEVER)
 
 
 def _of_twins(part: int, node: ast.AST, name: str, block: list[ast.stmt]) -> Iterator[ProgramEdit]:
@@ -341,7 +343,7 @@ def _of_twins(part: int, node: ast.AST, name: str, block: list[ast.stmt]) -> Ite
                 if other not in moved:
                     new = OtherName(own, other).visit(copied(line))
                     new.op = ast.Sub() if isinstance(line.op, ast.Add) else ast.Add()
-                    yield _missing(part, node, name, block, at + 1, new, 1.05)
+                    yield line_more(part, node, name, block, at + 1, new, 1.05)
 
 
 def _of_unused(
@@ -377,7 +379,7 @@ def _of_unused(
             for column in columns:
                 new = copied(where)
                 new.value = column
-                yield _missing(part, node, name, block, at + 1, new, 1.1)
+                yield line_more(part, node, name, block, at + 1, new, 1.1)
 
 
 _COLUMN, _POSE = (3,), (4, 4)

@@ -38,6 +38,8 @@ _OF_SUMMANDS = 1.08
 """Cost of the cross product of a rate that is turned and of what is added to it elsewhere."""
 _AS_LEVER = 1.07
 """Cost of a lever more that another product of the statement has."""
+_OF_A_POINT = 1.05
+"""Cost of a lever from the point whose coordinates are used nowhere."""
 _OUTWARD = 1.1
 """Cost of a sum over a part of an array for one over all of it."""
 _CHAIN = 1.1
@@ -58,6 +60,7 @@ def of_composites(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdi
     if isinstance(node, ast.Constant | ast.List | ast.Tuple):
         return
     if shape == ():
+        yield from _from_where_it_turns(here, scope)
         if isinstance(node, ast.Name | ast.Subscript | ast.Attribute):
             if _begins(node, _MOMENTS) and (term or isinstance(op, ast.Mult)):
                 yield from _parallel_axes(here, scope)
@@ -391,6 +394,22 @@ def _is_arm(node: ast.expr) -> bool:
     if isinstance(node, ast.Call) and called(node) in ("array", "asarray") and len(node.args) == 1:
         return _is_arm(node.args[0])
     return isinstance(node, ast.Name | ast.Subscript | ast.Attribute) and _begins(node, _ARMS)
+
+
+def _from_where_it_turns(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """Two coordinates less those of a point that is used nowhere: ``(x - jx)*fy - (y - jy)*fx``."""
+    node = here.node
+    both = (node.left, node.right) if isinstance(node, ast.BinOp) else ()
+    idle = sorted(name for name in scope.unused if scope.shapes.get(name) == ())
+    if len(both) != 2 or not isinstance(node.op, ast.Sub) or len(idle) != 2:
+        return
+    if not all(isinstance(x, ast.BinOp) and isinstance(x.op, ast.Mult) for x in both):
+        return
+    for order in (idle, idle[::-1]):
+        new = copied(node)
+        for side, name in zip((new.left, new.right), order, strict=True):
+            side.left = ast.BinOp(side.left, ast.Sub(), ast.Name(name, ast.Load()))
+        yield here.instead(new, "missing term", _OF_A_POINT)
 
 
 def _of_levers(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

@@ -203,7 +203,7 @@ def _base_set(trial: Trial, observed: Observed, table: DHTable) -> Iterator[Prog
         for here in places(0, trial.trees[0]):
             named = isinstance(here.node, ast.Name) and here.node.id in given
             if named and observed.shape(here.node) == (4, 4):
-                product = ast.BinOp(_written(base), ast.MatMult(), here.node)
+                product = ast.BinOp(matrix_typed(base), ast.MatMult(), here.node)
                 yield here.instead(product, "missing matrix", _END)
     turned = float(np.arccos(np.clip((np.trace(base[:3, :3]) - 1) / 2, -1, 1)))
     angle = _PI if turned == np.pi and "np" in trial.space else number(turned)
@@ -217,10 +217,10 @@ def _base_set(trial: Trial, observed: Observed, table: DHTable) -> Iterator[Prog
         if seen is None or seen.shape != end.shape or np.array_equal(end, np.eye(size)):
             continue
         if all(np.array_equal(value, np.eye(size)) for value in seen.values):
-            yield here.instead(_written(end), "number", _END)
+            yield here.instead(matrix_typed(end), "number", _END)
 
 
-def _written(value: Array) -> ast.expr:
+def matrix_typed(value: Array) -> ast.expr:
     """A matrix as it is typed."""
     diagonal = np.diagonal(value)
     plain = np.array_equal(value, np.diag(diagonal))

@@ -5,18 +5,23 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import TypeGuard
 
 import numpy as np
 
-from kinlab.doctor.bytecode.syntax import copied, nodes
+from kinlab.doctor.bytecode.syntax import copied, nodes, text_of
+from kinlab.doctor.program.edits.blocks import line_more
 from kinlab.doctor.program.edits.chains import SUMS, chain
-from kinlab.doctor.program.edits.numbers.as_the_arm import typed
+from kinlab.doctor.program.edits.numbers.as_the_arm import matrix_typed, typed
+from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import Here, ProgramEdit
 from kinlab.model.dh import DHTable
 from kinlab.tolerances import TOLERANCES
 
 _TOOL, _ROTOR = 1.05, 1.04
 """Cost of the tool's offset where noughts stand, and of rotors that are left out beside others."""
+_BEHIND, _DECIMALS = 1.1, 12
+"""Cost of the tool's transform behind a loop, and digits of it."""
 _FEWEST = 2
 """Rotors that are there, of which others are missed."""
 
@@ -35,6 +40,41 @@ def at_the_tool(here: Here, table: DHTable, given: Sequence[float]) -> Iterator[
             here.within(here.node, "elts", [*new, *here.node.elts[3:]], "number", _TOOL),
             of_the_arm=True,
         )
+
+
+def tool_behind_a_loop(
+    part: int, tree: ast.AST, observed: Observed, table: DHTable
+) -> Iterator[ProgramEdit]:
+    """The tool's transform behind a loop that goes from frame to frame: ``T = T @ tool``."""
+    tool = np.round(np.asarray(table.tool, dtype=float), _DECIMALS) + 0.0
+    for node, block in ((x, x.body) for x in nodes(tree) if isinstance(x, ast.FunctionDef)):
+        for at, loop in enumerate(block):
+            if not isinstance(loop, ast.For):
+                continue
+            behind = {x.id for line in block[at + 1 :] for x in nodes(line) if _is_read(x)}
+            for name in sorted(behind.intersection(_carried_on(loop, observed))):
+                product = ast.BinOp(ast.Name(name, ast.Load()), ast.MatMult(), matrix_typed(tool))
+                line = ast.Assign([ast.Name(name, ast.Store())], product)
+                edit = line_more(part, node, "body", block, at + 1, line, _BEHIND)
+                yield replace(edit, of_the_arm=True)
+
+
+def _is_read(node: ast.AST) -> TypeGuard[ast.Name]:
+    return isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)
+
+
+def _carried_on(loop: ast.For, observed: Observed) -> Iterator[str]:
+    """The transforms that a loop multiplies by another each time: ``T = T @ A``."""
+    for line in nodes(loop):
+        if not isinstance(line, ast.Assign) or not isinstance(line.value, ast.BinOp):
+            continue
+        first: ast.expr = line.value
+        while isinstance(first, ast.BinOp) and isinstance(first.op, ast.MatMult):
+            first = first.left
+        target = line.targets[0]
+        same = isinstance(first, ast.Name) and text_of(target) == first.id
+        if same and observed.shape(first) == (4, 4):
+            yield text_of(target)
 
 
 def rotors_left_out(here: Here, table: DHTable) -> Iterator[ProgramEdit]:

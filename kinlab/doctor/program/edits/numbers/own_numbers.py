@@ -16,7 +16,11 @@ from kinlab.doctor.bytecode.syntax import called, nodes
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.numbers.as_the_arm import typed
 from kinlab.doctor.program.edits.numbers.data import NumberPlace, measured, numbers
-from kinlab.doctor.program.edits.numbers.left_out import at_the_tool, rotors_left_out
+from kinlab.doctor.program.edits.numbers.left_out import (
+    at_the_tool,
+    rotors_left_out,
+    tool_behind_a_loop,
+)
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import ANGLES, DATA, Here, ProgramEdit, number, places, root
 from kinlab.doctor.program.trial import Trial
@@ -125,6 +129,9 @@ def of_own_numbers(
         for here in places(part, tree):
             yield from at_the_tool(here, table, given)
             yield from rotors_left_out(here, table)
+    whole = not np.array_equal(np.asarray(table.tool, dtype=float), np.eye(4))
+    for part, tree in enumerate(trial.trees) if whole and "np" in trial.space else ():
+        yield from tool_behind_a_loop(part, tree, observed, table)
     yield from _moves_left_out(trial, observed, table, unnamed)
     yield from _begun_at_the_base(trial, observed, table)
 
