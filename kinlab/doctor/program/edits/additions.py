@@ -104,8 +104,8 @@ _OF_NOTHING = 0.06
 """What a term costs more beside a name that is always nought: the name is another."""
 _SHARE_LEFT = 1.08
 """Cost of ``1 - x`` for a share x."""
-_DIFFERENCE = 1.1
-"""Cost of the same entry of another row, taken from the one that stands there."""
+_DIFFERENCE = 1.05
+"""Cost of the same entry of another row taken from one, where others are: ``phi[i] - phi[j]``."""
 _COUNTS = ("n", "N", "nj", "dof", "ndof")
 """Names of how many joints there are, which nobody takes twice."""
 _THRICE = 3
@@ -783,8 +783,17 @@ def _other_of_two(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     for own in counters if len(keys) > 1 else ():
         for other in sorted({*scope.counters} - {*counters}):
             new = OtherName(own, other).visit(copied(here.node))
-            for op, cost in ((ast.Sub(), _DIFFERENCE), (ast.Add(), _DIFFERENCE + 0.02)):
+            taken = _are_taken_from_each_other(here.above[0], own, other)
+            for op, cost in ((ast.Sub(), _DIFFERENCE if taken else 1.1), (ast.Add(), 1.12)):
                 yield here.instead(ast.BinOp(here.node, op, new), "missing term", cost)
+
+
+def _are_taken_from_each_other(tree: ast.AST, own: str, other: str) -> bool:
+    """Whether an entry with one counter is taken from that with another: ``phi[i] - phi[j]``."""
+    every = (x for x in nodes(tree) if isinstance(x, ast.BinOp) and isinstance(x.op, ast.Sub))
+    pairs = [{text_of(x.left), text_of(x.right)} for x in every]
+    halves = ({f"{name}[{k}]" for k in (own, other)} for name in {*names(tree)})
+    return any(both in pairs for both in halves)
 
 
 def _terms_of_others(here: Here, scope: Scope, siblings: set[str]) -> Iterator[ProgramEdit]:

@@ -39,7 +39,7 @@ from kinlab.doctor.program.edits.guards import choices, masks, of_guards
 from kinlab.doctor.program.edits.numbers.data import of_data
 from kinlab.doctor.program.edits.scope.forms import statement_of, summands
 from kinlab.doctor.program.edits.scope.part import Scope
-from kinlab.doctor.program.edits.single.calls import of_call
+from kinlab.doctor.program.edits.single.calls import begun_as_a_copy, of_call
 from kinlab.doctor.program.edits.single.comparisons import (
     is_switch,
     negated,
@@ -92,6 +92,8 @@ _SUMMED_UP = 1.03
 """The same where a sum is worked out in a loop inside another: the inner one's counter."""
 _ENTRIES_OF_A_ROW, _ONE_OF_ALL = 7, 1.08
 """Entries of a row to one of which something is added, and cost of one for all of them."""
+_ALONG_ANOTHER = 1.09
+"""Cost of a key at another place: ``A[:, :, 1]`` for ``A[1]``."""
 _ALL_BEFORE = 1.14
 """Cost of all entries up to the one that a value is put into."""
 _MISCALLED = 0.06
@@ -455,6 +457,7 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Program
     if isinstance(node, ast.Assign):
         yield from _in_degrees(here, scope, observed)
         yield from of_kinds_of_joints(here, scope)
+        yield from begun_as_a_copy(here, observed)
     if isinstance(node, ast.Assign | ast.AugAssign) and isinstance(here.holder, list):
         yield here.instead(ast.Pass(), "extra statement", 1.22)
 
@@ -587,6 +590,15 @@ def _added_to_one(here: Here, scope: Scope, observed: Observed) -> Iterator[Prog
         yield here.within(here.node, "target", one, "index", _ONE_OF_ALL)
 
 
+def _along_another(keys: Sequence[ast.expr], size: int) -> Iterator[ast.Tuple]:
+    """One key at another place of several: ``A[:, :, 1]`` for ``A[1]``."""
+    whole = [isinstance(key, ast.Slice) and ast.unparse(key) == ":" for key in keys]
+    own = [key for key, every in zip(keys, whole, strict=True) if not every]
+    for at in range(size) if len(own) == 1 else ():
+        if at >= len(keys) or whole[at]:
+            yield ast.Tuple([*(ast.Slice() for _k in range(at)), *own], ast.Load())
+
+
 def _target(
     here: Here, target: ast.Subscript, scope: Scope, observed: Observed
 ) -> Iterator[ProgramEdit]:
@@ -594,6 +606,8 @@ def _target(
     yield from of_keys(here, target, 1.12)
     sizes = observed.shape(target.value) or ()
     summing = _innermost(here) if isinstance(here.node, ast.AugAssign) else []
+    for keys in _along_another([key for *_at, key in keys_of(target)], len(sizes)):
+        yield here.within(target, "slice", keys, "index", _ALONG_ANOTHER)
     for name in _filled_beside(here, target, observed):
         yield here.within(target, "value", ast.Name(name, ast.Load()), "name", _FILLED)
     for k, (holder, field, key) in enumerate(keys_of(target)):

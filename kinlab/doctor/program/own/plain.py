@@ -115,7 +115,8 @@ def is_plain(tree: ast.AST, function: FunctionType) -> bool:
             return False  # it might catch what ends it
         if isinstance(node, ast.With) and not all(map(_settles, node.items)):
             return False
-        if isinstance(node, ast.Global) and not set_.isdisjoint(node.names):
+        kept = set_.intersection(node.names) if isinstance(node, ast.Global) else ()
+        if not all(_counts_calls(tree, name) for name in kept):
             return False  # it keeps something from one call to the next
         if isinstance(node, ast.Nonlocal) and not {*node.names}.isdisjoint(
             function.__code__.co_freevars
@@ -132,6 +133,14 @@ def is_plain(tree: ast.AST, function: FunctionType) -> bool:
         if isinstance(node, ast.Attribute) and ast.unparse(node) in _ENDLESS:
             return False
     return True
+
+
+def _counts_calls(tree: ast.AST, name: str) -> bool:
+    """Whether a global is a counter of calls, which nothing here reads: ``calls += 1``."""
+    lines = [x for x in nodes(tree) if isinstance(x, ast.AugAssign)]
+    lines = [x for x in lines if getattr(x.target, "id", "") == name]
+    counting = [x for x in lines if isinstance(x.value, ast.Constant)]
+    return len(counting) == sum(one == name for one in names(tree))
 
 
 def _arithmetic(module: str) -> bool:

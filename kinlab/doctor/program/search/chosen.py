@@ -97,7 +97,8 @@ def chosen(
     every = [x if cost == x.cost else replace(x, cost=cost) for x, cost in signs]
     every = [replace(x, cost=x.cost + _AGAIN) if _adds_again(x) else x for x in every]
     named = _values_of_names(robot)
-    every = [replace(x, cost=x.cost + _MISNAMED) if _takes(x, named) else x for x in every]
+    lines = _with_names(trial, named)
+    every = [replace(x, cost=x.cost + _MISNAMED) if _takes(x, named, lines) else x for x in every]
     every = sorted(every, key=_at_best)[:most]
     weigh = dimensions.against
     return [replace(x, cost=x.cost + more) if (more := weigh(x)) else x for x in every]
@@ -119,12 +120,28 @@ def _values_of_names(robot: Any) -> Mapping[str, float]:
     return {} if table is None else vocabulary(table).values
 
 
-def _takes(edit: ProgramEdit, named: Mapping[str, float]) -> bool:
+def _with_names(trial: Trial, named: Mapping[str, float]) -> set[int]:
+    """The two sides of statements in which names are given what the robot has by them."""
+    found: set[int] = set()
+    for node in (x for tree in trial.trees for x in nodes(tree) if isinstance(x, ast.Assign)):
+        left, right = node.targets[0], node.value
+        if isinstance(left, ast.Tuple) and isinstance(right, ast.Tuple):
+            pairs = zip(left.elts, right.elts, strict=False)
+            told = [(named.get(text_of(x)), getattr(y, "value", None)) for x, y in pairs]
+            known = [own == value for own, value in told if own is not None and value is not None]
+            found |= {id(left), id(right)} if len(known) > 1 and all(known) else set()
+    return found
+
+
+def _takes(edit: ProgramEdit, named: Mapping[str, float], lines: set[int]) -> bool:
     """Whether names that have the robot's numbers would be given each other's: l1, l2."""
-    if edit.kind != "entries swapped" or edit.part != DATA or edit.place:
+    first = edit.changes[0]
+    if edit.kind not in ("entries swapped", "order") or edit.place:
         return False
+    if edit.part != DATA:
+        return id(first.holder) in lines
     fields = [one.field for one in edit.changes if isinstance(one.holder, dict)]
-    held = [(named.get(field), edit.changes[0].holder.get(field)) for field in fields]
+    held = [(named.get(field), first.holder.get(field)) for field in fields]
     return bool(held) and all(own is not None and own == value for own, value in held)
 
 

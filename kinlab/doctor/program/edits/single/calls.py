@@ -299,12 +299,26 @@ def _of_a_copy(here: Here, scope: Scope, observed: Observed) -> Iterator[Program
     if called(node) != "append" or len(node.args) != 1 or not isinstance(node.args[0], ast.Name):
         return
     kept, shape = node.args[0], observed.shape(node.args[0])
-    changed = {root(x.target) for x in nodes(here.above[0]) if isinstance(x, ast.AugAssign)}
-    stores = (x for x in nodes(here.above[0]) if isinstance(x, ast.Subscript))
-    changed |= {root(x) for x in stores if isinstance(x.ctx, ast.Store)}
-    if shape and kept.id in changed:
+    if shape and kept.id in _changed_in_place(here.above[0]):
         copy = ast.Call(ast.Attribute(kept, "copy", ast.Load()), [], [])
         yield here.within(node.args, 0, copy, "aliased", _ALIASED)
+
+
+def begun_as_a_copy(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
+    """A copy of an array for it, where the new name is changed in place: ``x = x0.copy()``."""
+    line = here.node
+    own = [one.id for one in line.targets if isinstance(one, ast.Name)]
+    array = isinstance(line.value, ast.Name) and observed.shape(line.value)
+    if array and not _changed_in_place(here.above[0]).isdisjoint(own):
+        copy = ast.Call(ast.Attribute(line.value, "copy", ast.Load()), [], [])
+        yield here.within(line, "value", copy, "aliased", _ALIASED)
+
+
+def _changed_in_place(tree: ast.AST) -> set[str | None]:
+    """The names of arrays of which entries are set, or to which something is added."""
+    added = [x.target for x in nodes(tree) if isinstance(x, ast.AugAssign)]
+    stores = (x for x in nodes(tree) if isinstance(x, ast.Subscript))
+    return {*map(root, added), *(root(x) for x in stores if isinstance(x.ctx, ast.Store))}
 
 
 def _other_function(here: Here, name: str) -> Iterator[ProgramEdit]:

@@ -1,0 +1,98 @@
+"""Sides of equations behind words, and of names that are explained: each is judged, or told."""
+
+from __future__ import annotations
+
+import pytest
+
+import kinlab as kl
+from kinlab.errors import ExpressionError
+
+OWN = "m1*l1^2/12 + m1*l1^2/4"
+
+
+@pytest.mark.parametrize(
+    "between",
+    [
+        " (Steiner)\n", " (Steiner) ", " by Steiner\n", " by the parallel axis theorem\n", " (parallel axis theorem)\n",
+        ", i.e. ", ", that is ", ", so ", " hence ", ", which simplifies to ", "; this gives ", "，即", "，化简得", "，所以",
+        " (using l_c = l/2) ", " [Steiner] ", r" \text{(Steiner)} ", "\\quad\\text{(Steiner)}\n", " (Satz von Steiner)\n", ", d.h. ",
+    ],
+)  # fmt: skip
+def test_a_side_behind_words_is_judged(between):
+    right = kl.diagnose("single_link", "M11", f"M11 = {OWN}{between}= m1*l1^2/3")
+    assert right.agrees, right
+    assert not any("not judged" in one for one in right.remarks), right
+    wrong = kl.diagnose("single_link", "M11", f"M11 = {OWN}{between}= m1*l1^2")
+    assert not wrong.agrees, wrong
+    assert "m1*l1^2 should be m1*l1^2/3" in wrong.causes[0].sentence
+    middle = kl.diagnose("single_link", "M11", f"M11 = m1*l1^2/12 + m1*l1^2{between}= m1*l1^2/3")
+    assert not middle.agrees, middle
+
+
+@pytest.mark.parametrize("words", ["(平行轴定理)", "（平行轴定理）\n"])
+def test_a_side_behind_words_that_nobody_has_listed_is_not_passed_over(words):
+    right = kl.diagnose("single_link", "M11", f"M11 = {OWN} {words}= m1*l1^2/3")
+    assert right.agrees and any("were not read" in one for one in right.remarks), right
+    with pytest.raises(ExpressionError, match="were not read"):
+        kl.diagnose("single_link", "M11", f"M11 = {OWN} {words}= m1*l1^2")
+
+
+@pytest.mark.parametrize(
+    "words", [", and its derivative", "; the torque", "，其导数", ", derivative", ", and another entry"]
+)  # fmt: skip
+def test_what_is_said_of_something_else_is_not_held_against_it(words):
+    """The words name another quantity: what they are told to be is not this formula's."""
+    found = kl.diagnose("single_link", "V", f"V = m1*g*l1/2*sin(q1){words} = m1*g*l1/2*cos(q1)")
+    assert found.agrees and any("not judged" in one for one in found.remarks), found
+
+
+T = "1/6*(m1 + 3*m2)*l1^2*qd1^2 + 1/6*m2*l2^2*(qd1+qd2)^2 + 1/2*m2*l1*l2*c2*qd1*(qd1+qd2)"
+V = "(1/2*m1 + m2)*g*l1*s1 + 1/2*m2*g*l2*s12"
+
+
+def test_explained_names_in_a_chain_are_judged():
+    end = f"{T} - (1/2*m1 + m2)*g*l1*s1 - 1/2*m2*g*l2*s12"
+    assert kl.diagnose("planar2r_rods", "L", f"T = {T}\nV = {V}\nL = T - V = {end}").agrees
+    for wrong in (
+        f"T = {T.replace('1/6*m2', 'm2')}\nV = {V}\nL = T - V = {end}",
+        f"T = {T}\nV = {V.replace('s12', 'c12')}\nL = T - V = {end}",
+    ):
+        found = kl.diagnose("planar2r_rods", "L", wrong)
+        assert not found.agrees and found.causes[0].sentence[:1] in "TV", found
+    assert kl.diagnose("planar2r_rods", "M22", "h = m2*l2^2/3\nM22 = h = I2 + m2*l2^2/4").agrees
+    wrong = "h = m2*l2^2/2\nM22 = h = I2 + m2*l2^2/4"
+    assert not kl.diagnose("planar2r_rods", "M22", wrong).agrees
+    # without what they are said to be, T and V say what the Lagrangian is
+    assert kl.diagnose("planar2r_rods", "L", f"L = T - V = {end}").agrees
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "z = l3 sin(q3) so dz/dq3 = l3*cos(q3)", "z = l3 sin(q3), hence ∂z/∂q3 = l3*cos(q3)",
+        "p_z = l3 sin(q3)\n∂p_z/∂q3 = l3*cos(q3)", r"$z = l_3 \sin q_3$, so $\frac{\partial z}{\partial q_3} = l_3 \cos q_3$",
+        "z = l3*s3 so J33 = dz/dq3 = l3*cos(q3)",
+    ],
+)  # fmt: skip
+def test_of_a_coordinate_and_its_derivative_the_latter_is_judged(text):
+    assert kl.diagnose("spatial3r", "J33", text).agrees
+    wrong = text[::-1].replace("soc", "nis", 1)[::-1]
+    found = kl.diagnose("spatial3r", "J33", wrong)
+    assert not found.agrees and "cos" in found.causes[0].sentence, found
+
+
+@pytest.mark.parametrize("name", ["x", "y", "z", "p_x", "px"])
+@pytest.mark.parametrize(
+    ("entry", "formula"), [("J11", "-l1*s1 - l2*s12"), ("M22", "m2*l2^2"), ("g2", "m2*g*l2*c12")]
+)
+def test_a_coordinate_is_no_entry_of_something_else(name, entry, formula):
+    assert kl.diagnose("planar2r", entry, formula).agrees
+    with pytest.raises(ExpressionError, match="which is another"):
+        kl.diagnose("planar2r", entry, f"{name} = {formula}")
+
+
+def test_steps_with_a_derivative_in_front_are_told():
+    steps = "d/dt(∂L/∂θ̇₂) = m₂l₂²(θ̈₁+θ̈₂)\n"
+    end = "τ₂ = m₂l₂²(θ̈₁+θ̈₂) + m₂l₁l₂c₂θ̈₁ + m₂l₁l₂s₂θ̇₁² + m₂gl₂c₁₂"
+    found = kl.diagnose("planar2r", "tau2", f"{steps}相减得 {end}")
+    assert found.agrees and any("was not judged" in one for one in found.remarks), found
