@@ -112,6 +112,49 @@ def f(xy, mode):
     return np.arctan2(np.sin(both), np.cos(both))
 """
 
+HALF_TURN = """
+import numpy as np
+def about_z(t):
+    c, s = np.cos(t), np.sin(t)
+    return np.array([[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+
+def along(x=0.0, z=0.0):
+    T = np.eye(4)
+    T[0, 3], T[2, 3] = x, z
+    return T
+
+def f(q):
+    over = np.diag([1.0, -1.0, -1.0, 1.0])
+    one = along(z=0.387) @ about_z(q[0]) @ along(x=0.325)
+    return one @ about_z(q[1]) @ along(x=0.275) @ over @ along(z=q[2]) @ about_z(q[3])
+"""
+NORMAL = """
+import numpy as np
+def f(q):
+    up, t = np.array([0, 0, 1.0]), q[0] + q[1]
+    one, two = np.array([np.cos(q[0]), np.sin(q[0]), 0]), np.array([np.cos(t), np.sin(t), 0])
+    hand = 0.3*(np.cos(q[2])*two + np.sin(q[2])*up)
+    normal = np.array([two[1], -two[0], 0])
+    arm = 0.35*two + hand
+    return np.cross(up, 0.45*one + arm) @ np.cross(np.cross(up, arm), np.cross(normal, hand))
+"""
+BOTH_WAYS = """
+import numpy as np
+M, L = [2.0, 1.5], [0.5, 0.4]
+
+def f(q, v):
+    t, w, rates = np.cumsum(q), np.cumsum(v), np.zeros((2, 2))
+    for i in range(2):
+        J, D = np.zeros((2, 2)), np.zeros((2, 2))
+        for k in range(i + 1):
+            r = L[k]/2 if k == i else L[k]
+            J[:, :k + 1] += r*np.array([[-np.sin(t[k])], [np.cos(t[k])]])
+            D[:, :k + 1] += -r*w[k]*np.array([[np.cos(t[k])], [np.sin(t[k])]])
+        S = D.T @ J
+        rates += M[i]*(S + S.T)
+    return rates
+"""
+
 
 @pytest.mark.parametrize(
     ("robot", "quantity", "text", "right", "slip"),
@@ -122,8 +165,11 @@ def f(xy, mode):
         ("planar2r_rods", "planar_jacobian", COPY, "moved = q.copy()", "moved = q"),
         ("planar2r_rods", "mass_matrix_derivatives", KEYS, "dM[:, :, 1]", "dM[1]"),
         ("isotropic", "fivebar_angles", LEGS, "(l1**2 + reach**2 - l2**2)/(2*l1*", "(l2**2 + reach**2 - l1**2)/(2*l2*"),
+        ("scara", "fk", HALF_TURN, "np.diag([1.0, -1.0, -1.0, 1.0])", "np.diag([-1.0, 1.0, -1.0, 1.0])"),
+        ("spatial3r", "jacobian_determinant", NORMAL, "[two[1], -two[0], 0]", "[two[0], two[1], 0]"),
+        ("planar2r_rods", "mass_matrix_dot", BOTH_WAYS, "rates += M[i]*(S + S.T)", "rates += M[i]*2*S"),
     ],
-    ids=["total", "difference", "lever", "copy", "keys", "names"],
+    ids=["total", "difference", "lever", "copy", "keys", "names", "half turn", "normal", "both ways"],
 )  # fmt: skip
 def test_what_is_not_used_and_what_is_changed_is_told_in_its_line(
     robot, quantity, text, right, slip, tmp_path

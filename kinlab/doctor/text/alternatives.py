@@ -347,7 +347,8 @@ def _is_turned(angle: Node) -> bool:
 def _beside(line: Line, angle: Node) -> Iterator[Node]:
     """A sum of angles with one turned the other way, one less, or one more."""
     terms = angle.args if angle.op == "add" else (angle,)
-    for k, term in enumerate(terms):
+    terms = (*sorted(terms, key=lambda one: one.op == "num"),)  # pi/2 behind the angles
+    for k, term in sorted(enumerate(terms), key=lambda one: not _is_turned(one[1])):
         rest = (*terms[:k], *terms[k + 1 :])
         yield tree.add(*terms[:k], tree.mul(tree.num(-1), term), *terms[k + 1 :])
         if rest:

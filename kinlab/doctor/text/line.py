@@ -116,6 +116,10 @@ def _slid(node: Node) -> set[str]:
     return own.union(*map(_slid, node.args))
 
 
+_LONG_NUMBER = re.compile(r"(?<![\w.])\d\.\d{9,}(?![\w.])")
+"""A number that no writer types: 1.57079632679."""
+
+
 @dataclass(eq=False)
 class Line:
     """One formula, with what each change would do to it.
@@ -251,6 +255,7 @@ class Line:
         plain = tree.to_text(respelled(node, self.spelling, self.short))
         if self.short and any(map(self._means_another, words_in(plain))):
             plain = tree.to_text(respelled(node, self.spelling, False))
+        plain = _LONG_NUMBER.sub(lambda one: Meanings({}).named(float(one[0])), plain)
         return re.sub(r" ([-+]) ", rf"{self.gap}\1{self.gap}", plain)
 
     def _means_another(self, word: str) -> bool:

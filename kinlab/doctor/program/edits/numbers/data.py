@@ -215,7 +215,8 @@ def _of_diagonal(name: str, value: Array, place: tuple[Any, ...]) -> Iterator[Pr
                 FieldChange(value, (j, j), diagonal[i]),
             )
             told = (_row(diagonal), _row(_swapped(diagonal, i, j)))
-            yield _swap(both, "entries swapped", name, place, told)
+            edit = _swap(both, "entries swapped", name, place, told)
+            yield replace(edit, cost=_AXIS) if {*np.abs(diagonal)} == {1.0} else edit
 
 
 def _of_tuple(

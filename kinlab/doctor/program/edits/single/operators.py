@@ -142,9 +142,11 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
                 for other in (ast.Add(), ast.Sub()):
                     yield here.within(node, "op", other, "operator", 1.16)
             square = matrices[1] is not None and len(matrices[1]) == 2
-            if square and chains.is_two(left):
-                across = ast.Attribute(right, "T", ast.Load())
-                yield here.instead(ast.BinOp(right, ast.Add(), across), "transposed", 1.08)
+            others = chains.without_two(left) if square else None
+            if square and (others is not None or chains.is_two(left)):
+                both = ast.BinOp(right, ast.Add(), ast.Attribute(right, "T", ast.Load()))
+                both = both if others is None else ast.BinOp(others, ast.Mult(), both)
+                yield here.instead(both, "transposed", 1.08)
             if not (
                 isinstance(here.parent, ast.BinOp) and isinstance(here.parent.op, chains.PRODUCTS)
             ):

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations
 from typing import Any
 
-from kinlab.doctor.bytecode.syntax import called, copied, shallow
+from kinlab.doctor.bytecode.syntax import called, copied, shallow, text_of
 from kinlab.doctor.program.edits.chains import SUMS
 from kinlab.doctor.program.edits.numbers.data import moved_on, other_words
 from kinlab.doctor.program.observed import Observed
@@ -297,6 +297,8 @@ def _opposite(node: ast.expr) -> ast.expr:
     return ast.UnaryOp(ast.USub(), node)
 
 
+_SIGNS = 1.06
+"""Cost of two signs for one another in a row of signs: about which axis something is turned."""
 _TURNED_AWAY = 1.14
 """Cost of a number along another axis, with the other sign."""
 
@@ -310,12 +312,22 @@ def swapped_in(here: Here, row: ast.List | ast.Tuple, observed: Observed) -> Ite
             swapped[i], swapped[j] = swapped[j], swapped[i]
             moved = j == _PLACE and getattr(row.elts[j], "value", None) == 1
             cost = 1.12 + FLAT * moved  # of what is a place, and no direction
-            cost = _HALVED if halves else cost
+            cost = _HALVED if halves else _SIGNS if _are_signs(row) else cost
             yield here.within(row, "elts", swapped, "entries swapped", cost)
             empty = [is_nothing(one) for one in (row.elts[i], row.elts[j])]
             if any(empty) and not all(empty):  # along another axis, the other way
                 turned = [_opposite(x) if k in (i, j) else x for k, x in enumerate(swapped)]
                 yield here.within(row, "elts", turned, "entries swapped", _TURNED_AWAY)
+            elif not any(empty) and len(row.elts) <= _THREE and any(map(is_nothing, row.elts)):
+                for at in (i, j):  # the normal of a direction in a plane
+                    turned = [_opposite(x) if k == at else x for k, x in enumerate(swapped)]
+                    yield here.within(row, "elts", turned, "entries swapped", _TURNED_AWAY)
+
+
+def _are_signs(row: ast.List | ast.Tuple) -> bool:
+    """Whether a row has nothing but signs in it, as a half turn's matrix on its diagonal."""
+    typed = {text_of(one).lstrip("-") for one in row.elts}
+    return len(row.elts) > _PAIR and typed <= {"1", "1.0"}
 
 
 def _are_halves(row: ast.List | ast.Tuple, observed: Observed) -> bool:
