@@ -96,3 +96,19 @@ def test_steps_with_a_derivative_in_front_are_told():
     end = "τ₂ = m₂l₂²(θ̈₁+θ̈₂) + m₂l₁l₂c₂θ̈₁ + m₂l₁l₂s₂θ̇₁² + m₂gl₂c₁₂"
     found = kl.diagnose("planar2r", "tau2", f"{steps}相减得 {end}")
     assert found.agrees and any("was not judged" in one for one in found.remarks), found
+
+
+@pytest.mark.parametrize(
+    ("entry", "text"),
+    [
+        ("g2", "g2 = ∂V/∂q1 = m2*g*l2*c12"), ("g2", "g2 = dV/dq3 = m2*g*l2*c12"),
+        ("g2", r"$g_2 = \frac{\partial V}{\partial q_1} = m_2 g l_2 c_{12}$"),
+        ("J11", "J11 = ∂x/∂q2 = -l1*s1 - l2*s12"), ("J11", "J11 = ∂y/∂q1 = -l1*s1 - l2*s12"),
+    ],
+)  # fmt: skip
+def test_the_derivative_of_something_else_is_refused(entry, text):
+    with pytest.raises(ExpressionError, match="which is another"):
+        kl.diagnose("planar2r", entry, text)
+    own = text.replace("q1 =", "q2 =").replace("q3", "q2").replace("q_1", "q_2")
+    own = {"g2": own, "J11": "J11 = ∂x/∂q1 = -l1*s1 - l2*s12"}[entry]
+    assert kl.diagnose("planar2r", entry, own).agrees

@@ -226,3 +226,22 @@ def row_of(edit: ProgramEdit) -> int:
         if change.field == "op" or change.new is node.left:
             return int(node.right.lineno)
     return int(node.lineno)
+
+
+def line_more(
+    part: int,
+    node: ast.AST,
+    field: str,
+    block: list[ast.stmt],
+    at: int,
+    line: ast.stmt,
+    cost: float,
+) -> ProgramEdit:
+    """A line more in a block, in front of what stands at a place of it."""
+    before = block[at - 1].end_lineno if at else getattr(node, "lineno", 0)
+    for one in nodes(line):
+        if isinstance(one, ast.stmt | ast.expr):
+            one.lineno = one.end_lineno = before or 0
+            one.col_offset = one.end_col_offset = 0
+    change = FieldChange(node, field, [*block[:at], line, *block[at:]])
+    return ProgramEdit(part, (change,), "missing statement", cost, line)

@@ -280,6 +280,15 @@ _SLOPE = re.compile(
 _PLACES_OF = re.compile(r"(gravity_torques|(?:planar_|com_)?jacobians?)\[([\d,\s]+)\]")
 
 
+def _with_places(entry: str) -> str:
+    """``jacobian[0,1]`` of J12, ``gravity_torques[1]`` of g2."""
+    found = re.fullmatch(r"([gJ])(\d)(\d?)", entry)
+    if found is None or (found[1] == "g") is bool(found[3]):
+        return entry
+    places = ",".join(str(int(k) - 1) for k in found.groups()[1:] if k)
+    return f"{'gravity_torques' if found[1] == 'g' else 'jacobian'}[{places}]"
+
+
 def is_another_slope(side: str, entry: str) -> bool:
     r"""Whether a side is the derivative of another coordinate, or by another joint.
 
@@ -290,7 +299,7 @@ def is_another_slope(side: str, entry: str) -> bool:
         entry: what the formula is asked for.
     """
     plain = re.sub(r"\s|\\[,;! ]", "", side.strip("& $"))[:_LONGEST]
-    found, asked = _SLOPE.fullmatch(plain), _PLACES_OF.fullmatch(entry)
+    found, asked = _SLOPE.fullmatch(plain), _PLACES_OF.fullmatch(_with_places(entry))
     if found is None or asked is None:
         return False
     what, link, joint = (

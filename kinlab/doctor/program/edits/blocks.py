@@ -11,7 +11,14 @@ from kinlab.doctor.program.edits.additions import OtherAxis, OtherName
 from kinlab.doctor.program.edits.scope.forms import Turned
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.observed import Observed, Shape
-from kinlab.doctor.program.places import ProgramEdit, paired, reads, root, written_into
+from kinlab.doctor.program.places import (
+    ProgramEdit,
+    line_more,
+    paired,
+    reads,
+    root,
+    written_into,
+)
 from kinlab.doctor.program.trial import FieldChange
 
 _FAR = 6
@@ -244,25 +251,6 @@ def _added(
     """``angle += q[i]`` in a loop."""
     line = ast.AugAssign(ast.Name(name, ast.Store()), ast.Add(), piece)
     return line_more(part, loop, "body", loop.body, at, line, cost)
-
-
-def line_more(
-    part: int,
-    node: ast.AST,
-    field: str,
-    block: list[ast.stmt],
-    at: int,
-    line: ast.stmt,
-    cost: float,
-) -> ProgramEdit:
-    """A line more in a block, in front of what stands at a place of it."""
-    before = block[at - 1].end_lineno if at else getattr(node, "lineno", 0)
-    for one in nodes(line):
-        if isinstance(one, ast.stmt | ast.expr):
-            one.lineno = one.end_lineno = before or 0
-            one.col_offset = one.end_col_offset = 0
-    change = FieldChange(node, field, [*block[:at], line, *block[at:]])
-    return ProgramEdit(part, (change,), "missing statement", cost, line)
 
 
 def _beside(

@@ -10,11 +10,10 @@ from typing import TypeGuard
 import numpy as np
 
 from kinlab.doctor.bytecode.syntax import copied, nodes, text_of
-from kinlab.doctor.program.edits.blocks import line_more
 from kinlab.doctor.program.edits.chains import SUMS, chain
 from kinlab.doctor.program.edits.numbers.as_the_arm import matrix_typed, typed
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import Here, ProgramEdit
+from kinlab.doctor.program.places import Here, ProgramEdit, line_more
 from kinlab.model.dh import DHTable
 from kinlab.tolerances import TOLERANCES
 
