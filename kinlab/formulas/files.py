@@ -220,7 +220,7 @@ def _formula_file(
             entries |= parts
             whole |= {one: grid for one in parts if parts_of and (grid := parts_of(one))}
             doubts |= dict.fromkeys(parts, doubts[key])
-    explained: set[str] = set()
+    explained, opened = set[str](), set[str]()
     for key, value in entries.items():
         own, entries[key] = typed.explained(_text(value, f"{place}: {key}"), key)
         explained |= own.keys()
@@ -228,7 +228,9 @@ def _formula_file(
             said = _("of what is given for {name} the last step is taken; another was not judged")
             taken = said.format(name=", ".join(steps))
             remarks[key] = "; ".join(filter(None, (remarks.get(key), taken)))
+        put_in = {*own}
         own, entries[key] = with_matrices(own, entries[key], f"{place}: {key}")
+        opened |= put_in - own.keys()
         entries[key] = _of_gravity(entries[key], key)
         if last is not None and last.number == 1:
             entries[key] = _of_one_joint(entries[key], key)
@@ -280,9 +282,10 @@ def _formula_file(
             remarks |= dict.fromkeys(apart, remarks[key]) if key in remarks else {}
     left = {key: left_over(*doubts[key], names) for key in doubts.keys() & file.formulas.keys()}
     unread = {key: words for key, words in left.items() if words}
-    given = {*map(_bare_name, _used(file))}
+    given = {_bare_name(x) for x in opened.union(*map(_used, (file, *others)))}
     for key in left.keys() - ends.keys():
-        steps = [one for one in steps_beside(doubts[key][0], key) if _bare_name(one) not in given]
+        steps = [*dict.fromkeys(steps_beside(doubts[key][0], key))]
+        steps = [one for one in steps if _bare_name(one) not in given]
         judged = file.formulas.keys()
         steps = [x for x in steps if not any(typed.is_name_of(x, other) for other in judged)]
         if last is not None and last.number == 1:
@@ -332,7 +335,7 @@ def _of_one_joint(text: str, key: str) -> str:
 def _bare_name(name: str) -> str:
     with suppress(ExpressionError):
         name = typed.own_name(name)
-    return typed.joined_up(name)
+    return typed.joined_up(typed.square_of(name))
 
 
 def _used(file: FormulaFile) -> set[str]:

@@ -112,3 +112,14 @@ def test_the_derivative_of_something_else_is_refused(entry, text):
     own = text.replace("q1 =", "q2 =").replace("q3", "q2").replace("q_1", "q_2")
     own = {"g2": own, "J11": "J11 = ∂x/∂q1 = -l1*s1 - l2*s12"}[entry]
     assert kl.diagnose("planar2r", entry, own).agrees
+
+
+def test_what_a_step_alone_uses_that_is_not_judged_is_told():
+    """``\\dot M_{11}`` stands in the step in front, and not in what is judged."""
+    text = "C_{11} = \\frac12 \\dot M_{11} here.\n\\dot M_{11} = -m_2^2 l_1 l_2 s_2 \\dot q_2\nC_{11} = -\\frac12 m_2 l_1 l_2 s_2 \\dot q_2"
+    found = kl.diagnose("planar2r_rods", "C11", text)
+    assert found.agrees and any("M_{11}" in one for one in found.remarks), found
+    text = "v1^2 = l1^2*qd1^2\nv2^2 = l1^2*qd1^2 + l2^2*(qd1+qd2)^2 + 2*l1*l2*c2*qd1*(qd1+qd2)\nT = 1/2*m1*v1^2 + 1/2*m2*v2^2"
+    end = "1/2*(m1+m2)*l1^2*qd1^2 + 1/2*m2*l2^2*(qd1+qd2)^2 + m2*l1*l2*c2*qd1*(qd1+qd2)"
+    found = kl.diagnose("planar2r", "T", f"{text}\n = {end}")
+    assert found.agrees and found.remarks == (), found

@@ -111,7 +111,7 @@ def _may_be(name: str) -> bool:
 
 
 def steps_beside(text: str, entry: str) -> list[str]:
-    """The names, as typed, to which other equations give more than a number, and that none uses.
+    """The names, as typed, to which other equations give more than a number.
 
     Args:
         text: as typed.
@@ -121,12 +121,10 @@ def steps_beside(text: str, entry: str) -> list[str]:
         return []
     with suppress(_UnsureError):
         found = _all(text)
-        rights = [joined_up(one.right) for one in found]
         return [
             one.name
             for one in found
             if _OF_LETTERS.search(one.right)
-            and not any(stands_in(one.name, right) for right in rights)
             and not is_name_of(one.name, entry)
             and not is_sister(one.name, entry)
             and not (len(one.name) > 1 and is_linking(one.name))
