@@ -123,3 +123,32 @@ def test_what_a_step_alone_uses_that_is_not_judged_is_told():
     end = "1/2*(m1+m2)*l1^2*qd1^2 + 1/2*m2*l2^2*(qd1+qd2)^2 + m2*l1*l2*c2*qd1*(qd1+qd2)"
     found = kl.diagnose("planar2r", "T", f"{text}\n = {end}")
     assert found.agrees and found.remarks == (), found
+
+
+RIGHT, OTHER = "(m1+m2)*g*l1*c1 + m2*g*l2*c12", "(m1+m2)*g*l1*s1 + m2*g*l2*c12"
+
+
+@pytest.mark.parametrize(
+    "words", [", or ", ", that is ", ", which is the same as ", "\n  which equals\n  ", "，即 ", " 即为 ", "，也就是 ", ", i.e. "]
+)  # fmt: skip
+def test_words_for_a_sign_of_equality(words):
+    found = kl.diagnose("planar2r", "g1", f"g1 = {RIGHT}{words}{RIGHT}")
+    assert found.agrees and found.remarks == (), found
+    wrong = kl.diagnose("planar2r", "g1", f"g1 = {RIGHT}{words}{OTHER}")
+    assert not wrong.agrees and "s1 should be c1" in wrong.causes[0].sentence, wrong
+
+
+@pytest.mark.parametrize(
+    "behind",
+    [
+        " (using cos(q1)*cos(q2) - sin(q1)*sin(q2))", ", using c12 for cos(q1 + q2)", ", with c1*c2 - s1*s2 for c12",
+        " which we get by differentiating V", ", so the arm balances when c1 + c12 vanish", ", the derivative of m1*y1 + m2*y2",
+    ],
+)  # fmt: skip
+def test_what_is_said_behind_a_formula_is_no_other_side(behind):
+    assert kl.diagnose("planar2r", "g1", f"g1 = {RIGHT}{behind}").agrees
+
+
+def test_a_sum_behind_other_words_is_told():
+    found = kl.diagnose("planar2r", "g1", f"g1 = {RIGHT}, after collecting terms {OTHER}")
+    assert found.agrees and any("was not judged" in one for one in found.remarks), found

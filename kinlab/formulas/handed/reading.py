@@ -251,7 +251,7 @@ def as_formula(
     text = undressed(text, entry)
     text = _behind(text)
     whole, text = text, without_words(text, entry, place)
-    steps += [unjudged.format(words=f"= {one}") for one in sides_left_out(whole, text)]
+    steps += [unjudged.format(words=one) for one in sides_left_out(whole, text)]
     text = plain_rates(text)
     text, said = without_constant(without_units(text, entry, place), entry)
     return (

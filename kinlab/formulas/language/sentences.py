@@ -137,17 +137,26 @@ def sides_left_out(text: str, kept: str) -> list[str]:
         text: as typed.
         kept: what :func:`without_sentences` has of it.
     """
-    if text.count("=") < 2 or text == kept or _PROGRAM.search(text):
+    if "=" not in text or text == kept or _PROGRAM.search(text):
         return []
     pieces = [_bare(piece) for piece in _pieces(_without_words(text)[1])]
     judged = {_plain(side) for one in re.split(r"[;\n]", kept) for side in one.split("=")}
-    found = []
+    found = [one for one in _behind_an_equation(pieces) if _plain(one) not in judged]
     for left, *sides in (one.split("=") for piece in pieces for one in _equations(piece)):
         name = left.strip("& ,:").rpartition(" ")[2]
         word = len(name) > 1 and (is_listed(name) or _is_said(name))
         if not name or word or _OF_A_STEP.search(left):
-            found += [one.strip() for one in sides if _plain(one) not in judged]
-    return [one for one in found if one]
+            sides = [x.strip() for x in sides if _plain(x) not in judged]
+            found += [f"= {one}" for one in sides if re.search(r"\d|[*/^+(\\]", one)]
+    return found
+
+
+def _behind_an_equation(pieces: list[str]) -> list[str]:
+    """Sums without a sign of equality behind an equation: what words say of them is not known."""
+    begun = next((k for k, one in enumerate(pieces) if "=" in one), len(pieces))
+    plain = [one.strip(" ,.;:") for one in pieces[begun:] if "=" not in one]
+    sums = [one for one in plain if re.search(r"[A-Za-zα-ω]\w*[^\w+−-]*[+−-]\s*[\w\\(]", one)]
+    return [one for one in sums if re.search(r"\d", one)]
 
 
 _OF_A_STEP = re.compile(
@@ -161,7 +170,7 @@ def _without_words(text: str) -> tuple[str, str]:
     text = _DENOTES.sub(r"\1 = ", _DENOTES_IN_MATHS.sub(r"\1 = ", text))
     text = _ABOUT.sub(" ", _COMMENT.sub("", text))
     opened = _FONT.sub(lambda found: _opened(found, text), text)
-    joined = _joined(opened)
+    joined = _with_the_last(_joined(_THAT_IS.sub("that is", opened)))
     return text if joined == opened else joined, _marked(joined)
 
 
@@ -208,6 +217,41 @@ def _joined(text: str) -> str:
             rest = text[sign.start() :].lstrip("$") if dollars else text[sign.start() :]
             text = f"{front[: found.start()]}{'$' if dollars == '$' else ''} {rest}"
     return text
+
+
+def _with_the_last(text: str) -> str:
+    """The text with a sign of equality for words in front of its last formula: ``a, or b``."""
+    words = [x for x in _WORD.finditer(text) if is_word(x[0], text, x)]
+    if "=" not in text or not words or len(words) > _MOST:
+        return text
+    run = [words[-1]]
+    for one in reversed(words[:-1]):
+        if text[one.end() : run[0].start()].strip(" ,，\n"):
+            break
+        run = [one, *run]
+    while run and not is_linking(run[0][0]):
+        run = run[1:]
+    front = text[: run[0].start()].rstrip(" ,;，；:：\n") if run else ""
+    rest = text[words[-1].end() :].strip(" .。,，:：\n")
+    plain = front.rstrip("$ ")
+    side = "=" not in rest and _A_SUM.search(rest) and not MATHS.search(rest.strip("$"))
+    linked = run and not _OF_A_REASON.search(run[-1][0]) and all(is_linking(x[0]) for x in run)
+    if not side or not linked or not _ends_formula(plain) or plain.endswith("("):
+        return text
+    if front.endswith("$") and rest.startswith("$"):
+        return f"{plain} = {rest.lstrip('$')}"
+    return f"{front} = {rest}" if "$" not in front[-1:] + rest[:1] else text
+
+
+_THAT_IS = re.compile(r"\b(?:i\.\s?e|d\.\s?h)\.(?=[\s,$])", re.IGNORECASE)
+_OF_A_REASON = re.compile(
+    r"^(?:by|using|with|since|because|from|the|axis|parallel|theorem|terms|steiner|law|mit|nach|von|dem|satz)$"
+    r"|(?:由|根据|利用|用|轴|定理|代入|项)$",
+    re.IGNORECASE,
+)
+"""A last word that has a reason behind it, and no other side."""
+_A_SUM = re.compile(r"[A-Za-zα-ω][^,;]{0,200}[+*/^·−-]|\\[a-z]+")
+"""A formula with names, and signs between them."""
 
 
 def _is_said(word: str) -> bool:
