@@ -274,10 +274,12 @@ def _formula_file(
         *map(tree.names, [*file.formulas.values(), *file.symbols.values()])
     )
     matrices: dict[str, str] = {}
+    laid_out: set[str] = set()
     for key, doubt in list(doubts.items()):  # what is said of a matrix is said of its entries
         if key not in file.formulas and key in chains:
             apart, _writing = _opened({key: chains[key][0]}, symbols, place, writing, whole)
             doubts |= dict.fromkeys(apart, doubt)
+            laid_out |= apart.keys()
             matrices |= dict.fromkeys(apart, key) if key not in whole and len(apart) > 1 else {}
             remarks |= dict.fromkeys(apart, remarks[key]) if key in remarks else {}
     left = {key: left_over(*doubts[key], names) for key in doubts.keys() & file.formulas.keys()}
@@ -288,6 +290,8 @@ def _formula_file(
         steps = [one for one in steps if _bare_name(one) not in given]
         judged = file.formulas.keys()
         steps = [x for x in steps if not any(typed.is_name_of(x, other) for other in judged)]
+        mine = re.sub(r"[\d\[].*", "", key) if key in laid_out else ""  # M of M11
+        steps = [x for x in steps if _bare_name(x) != mine]
         if last is not None and last.number == 1:
             steps = [x for x in steps if not _is_its_only_entry(x, key)]
         if steps:

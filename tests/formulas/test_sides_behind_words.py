@@ -152,3 +152,18 @@ def test_what_is_said_behind_a_formula_is_no_other_side(behind):
 def test_a_sum_behind_other_words_is_told():
     found = kl.diagnose("planar2r", "g1", f"g1 = {RIGHT}, after collecting terms {OTHER}")
     assert found.agrees and any("was not judged" in one for one in found.remarks), found
+
+
+def test_a_number_behind_words_is_told():
+    for behind in (", i.e. 0.3 kg m²", " which gives 0.3"):
+        found = kl.diagnose("planar2r", "M22", f"M22 = m2*l2^2{behind}")
+        assert found.agrees and any("was not judged" in one for one in found.remarks), found
+
+
+def test_of_a_matrix_that_is_given_twice_each_is_judged():
+    right = "[m1*l1^2 + m2*(l1^2 + l2^2 + 2*l1*l2*c2), m2*(l2^2 + l1*l2*c2); m2*(l2^2 + l1*l2*c2), m2*l2^2]"
+    found = kl.diagnose("planar2r", "mass_matrix", f"M = {right} = {right}")
+    assert found.agrees and found.remarks == (), found
+    wrong = right.replace("2*l1*l2*c2", "l1*l2*c2")
+    found = kl.diagnose("planar2r", "mass_matrix", f"M = {right} (symmetric) = {wrong}")
+    assert not found.agrees and "2*l1*l2*c2" in found.causes[0].sentence, found

@@ -155,8 +155,11 @@ def _behind_an_equation(pieces: list[str]) -> list[str]:
     """Sums without a sign of equality behind an equation: what words say of them is not known."""
     begun = next((k for k, one in enumerate(pieces) if "=" in one), len(pieces))
     plain = [one.strip(" ,.;:") for one in pieces[begun:] if "=" not in one]
-    sums = [one for one in plain if re.search(r"[A-Za-zα-ω]\w*[^\w+−-]*[+−-]\s*[\w\\(]", one)]
-    return [one for one in sums if re.search(r"\d", one)]
+    return [one for one in plain if re.search(r"\d", one) and _A_STEP.search(one)]
+
+
+_A_STEP = re.compile(r"[A-Za-zα-ω]\w*[^\w+−-]*[+−-]\s*[\w\\(]|^[−-]?\d+\.\d+(?![.\d])")
+"""A sum with names, or a number with decimals."""
 
 
 _OF_A_STEP = re.compile(
