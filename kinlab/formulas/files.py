@@ -291,7 +291,7 @@ def _formula_file(
         judged = file.formulas.keys()
         steps = [x for x in steps if not any(typed.is_name_of(x, other) for other in judged)]
         mine = re.sub(r"[\d\[].*", "", key) if key in laid_out else ""  # M of M11
-        steps = [x for x in steps if _bare_name(x) != mine]
+        steps = [x for x in steps if not (mine and typed.is_name_of(x, mine))]
         if last is not None and last.number == 1:
             steps = [x for x in steps if not _is_its_only_entry(x, key)]
         if steps:
