@@ -154,6 +154,21 @@ def f(q, v):
         rates += M[i]*(S + S.T)
     return rates
 """
+MILLIMETRES = """
+import numpy as np
+crank, rod, half = 35.0, 55.1, 12.5
+
+def f(xy, v, mode):
+    x, y = 1000*xy[0], 1000*xy[1]
+    u, w = 1000*v[0], 1000*v[1]
+    out = []
+    for base, side in ((half, mode[0]), (-half, mode[1])):
+        far = np.hypot(x - base, y)
+        t = np.arctan2(y, x - base) - side*np.arccos((far**2 + crank**2 - rod**2)/(2*far*crank))
+        a, b = x - base - crank*np.cos(t), y - crank*np.sin(t)
+        out.append((a*u + b*w)/(crank*(b*np.cos(t) - a*np.sin(t))))
+    return np.array(out)
+"""
 
 
 @pytest.mark.parametrize(
@@ -167,9 +182,10 @@ def f(q, v):
         ("isotropic", "fivebar_angles", LEGS, "(l1**2 + reach**2 - l2**2)/(2*l1*", "(l2**2 + reach**2 - l1**2)/(2*l2*"),
         ("scara", "fk", HALF_TURN, "np.diag([1.0, -1.0, -1.0, 1.0])", "np.diag([-1.0, 1.0, -1.0, 1.0])"),
         ("spatial3r", "jacobian_determinant", NORMAL, "[two[1], -two[0], 0]", "[two[0], two[1], 0]"),
+        ("plotclock", "fivebar_rates", MILLIMETRES, "u, w = 1000*v[0], 1000*v[1]", "u, w = v[0], v[1]"),
         ("planar2r_rods", "mass_matrix_dot", BOTH_WAYS, "rates += M[i]*(S + S.T)", "rates += M[i]*2*S"),
     ],
-    ids=["total", "difference", "lever", "copy", "keys", "names", "half turn", "normal", "both ways"],
+    ids=["total", "difference", "lever", "copy", "keys", "names", "half turn", "normal", "units", "both ways"],
 )  # fmt: skip
 def test_what_is_not_used_and_what_is_changed_is_told_in_its_line(
     robot, quantity, text, right, slip, tmp_path

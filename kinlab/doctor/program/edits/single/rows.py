@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations
 from typing import Any
 
-from kinlab.doctor.bytecode.syntax import called, copied, shallow, text_of
+from kinlab.doctor.bytecode.syntax import called, copied, nodes, shallow, text_of
 from kinlab.doctor.program.edits.chains import SUMS
 from kinlab.doctor.program.edits.numbers.data import moved_on, other_words
 from kinlab.doctor.program.observed import Observed
@@ -61,6 +61,7 @@ def of_sequence(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
     yield from _products_of_inertia(here, elements)
     yield from _laid_out(here, elements)
     yield from _like_another(here, elements)
+    yield from _in_its_units(here, elements)
     turned = [_opposite(one) for one in elements]
     if sum(one is not old for one, old in zip(turned, elements, strict=True)) >= _PAIR:
         unpacked = isinstance(here.node, ast.Tuple) and isinstance(here.parent, ast.Assign)
@@ -146,6 +147,20 @@ _LAYOUTS = (
     ((0, 5, 4), (5, 1, 3), (4, 3, 2)),  # xx, yy, zz, yz, xz, xy
 )
 """Orders in which six numbers of an inertia tensor are kept."""
+
+
+def _in_its_units(here: Here, entries: Sequence[ast.expr]) -> Iterator[ProgramEdit]:
+    """A factor that another row of entries has: ``1000*v[0], 1000*v[1]`` beside ``1000*p[0]``."""
+    if not all(isinstance(one, ast.Subscript) for one in entries):
+        return
+    for row in (x for x in nodes(here.above[0]) if isinstance(x, ast.Tuple | ast.List)):
+        products = [x for x in row.elts if isinstance(x, ast.BinOp) and isinstance(x.op, ast.Mult)]
+        factors = {text_of(one.left) for one in products if isinstance(one.left, ast.Constant)}
+        if len(row.elts) == len(products) == len(entries) and len(factors) == 1:
+            factor = products[0].left
+            new: list[ast.expr] = [ast.BinOp(factor, ast.Mult(), one) for one in entries]
+            yield here.within(here.node, "elts", new, "factor", _UNITS)
+            return
 
 
 def _laid_out(here: Here, rows: Sequence[ast.expr]) -> Iterator[ProgramEdit]:
@@ -297,6 +312,8 @@ def _opposite(node: ast.expr) -> ast.expr:
     return ast.UnaryOp(ast.USub(), node)
 
 
+_UNITS = 1.08
+"""Cost of a factor of all entries of a row that those of another row have."""
 _SIGNS = 1.06
 """Cost of two signs for one another in a row of signs: about which axis something is turned."""
 _TURNED_AWAY = 1.14
