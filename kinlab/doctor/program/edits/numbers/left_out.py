@@ -25,15 +25,20 @@ _FEWEST = 2
 """Rotors that are there, of which others are missed."""
 
 
+def has_the_tool(table: DHTable, given: Sequence[float]) -> bool:
+    """Whether a number of the tool's point is among those of a program, which rather uses it."""
+    point = np.asarray(table.tool, dtype=float)[:3, 3]
+    near = (np.isclose(abs(x), given, rtol=TOLERANCES.same_number) for x in point if x)
+    return any(map(np.any, near))
+
+
 def at_the_tool(here: Here, table: DHTable, given: Sequence[float]) -> Iterator[ProgramEdit]:
     """The tool's point for the last frame's origin: ``[0, 0, 0.107, 1]`` for ``[0, 0, 0, 1]``."""
     row = [getattr(one, "value", None) for one in getattr(here.node, "elts", ())]
     if row not in ([0, 0, 0, 1], [0, 0, 0]) or isinstance(here.parent, ast.List | ast.Tuple):
         return
     point = np.asarray(table.tool, dtype=float)[:3, 3]
-    if point.any() and not any(
-        np.isclose(abs(x), given, rtol=TOLERANCES.same_number).any() for x in point if x
-    ):
+    if point.any() and not has_the_tool(table, given):
         new = [typed(float(x)) if x else ast.Constant(0) for x in point]
         yield replace(
             here.within(here.node, "elts", [*new, *here.node.elts[3:]], "number", _TOOL),

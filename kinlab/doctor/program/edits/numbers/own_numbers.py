@@ -18,6 +18,7 @@ from kinlab.doctor.program.edits.numbers.as_the_arm import typed
 from kinlab.doctor.program.edits.numbers.data import NumberPlace, measured, numbers
 from kinlab.doctor.program.edits.numbers.left_out import (
     at_the_tool,
+    has_the_tool,
     rotors_left_out,
     tool_behind_a_loop,
 )
@@ -130,7 +131,8 @@ def of_own_numbers(
             yield from at_the_tool(here, table, given)
             yield from rotors_left_out(here, table)
     whole = not np.array_equal(np.asarray(table.tool, dtype=float), np.eye(4))
-    for part, tree in enumerate(trial.trees) if whole and "np" in trial.space else ():
+    whole = whole and "np" in trial.space and not has_the_tool(table, given)
+    for part, tree in enumerate(trial.trees) if whole else ():
         yield from tool_behind_a_loop(part, tree, observed, table)
     yield from _moves_left_out(trial, observed, table, unnamed)
     yield from _begun_at_the_base(trial, observed, table)
