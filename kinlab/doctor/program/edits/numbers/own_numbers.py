@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from itertools import chain, combinations
 from types import ModuleType
@@ -131,11 +132,19 @@ def of_own_numbers(
             yield from at_the_tool(here, table, given)
             yield from rotors_left_out(here, table)
     whole = not np.array_equal(np.asarray(table.tool, dtype=float), np.eye(4))
-    whole = whole and "np" in trial.space and not has_the_tool(table, given)
+    whole = whole and "np" in trial.space and not has_the_tool(table, [*given, *_held(trial)])
     for part, tree in enumerate(trial.trees) if whole else ():
         yield from tool_behind_a_loop(part, tree, observed, table)
     yield from _moves_left_out(trial, observed, table, unnamed)
     yield from _begun_at_the_base(trial, observed, table)
+
+
+def _held(trial: Trial) -> Iterator[float]:
+    """The numbers that a module's names hold, used or not."""
+    kinds = (int, float, list, tuple, np.ndarray)
+    for value in (x for x in trial.space.values() if isinstance(x, kinds)):
+        with suppress(ValueError, TypeError):
+            yield from np.abs(np.ravel(np.asarray(value, dtype=float))).tolist()
 
 
 def _copies(tree: ast.AST) -> Iterator[str]:
