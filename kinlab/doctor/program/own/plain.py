@@ -116,7 +116,7 @@ def is_plain(tree: ast.AST, function: FunctionType) -> bool:
         if isinstance(node, ast.With) and not all(map(_settles, node.items)):
             return False
         kept = set_.intersection(node.names) if isinstance(node, ast.Global) else ()
-        if not all(_counts_calls(tree, name) for name in kept):
+        if not all(_counts_calls(tree, name) and not _reads(function, name) for name in kept):
             return False  # it keeps something from one call to the next
         if isinstance(node, ast.Nonlocal) and not {*node.names}.isdisjoint(
             function.__code__.co_freevars
@@ -141,6 +141,14 @@ def _counts_calls(tree: ast.AST, name: str) -> bool:
     lines = [x for x in lines if getattr(x.target, "id", "") == name]
     counting = [x for x in lines if isinstance(x.value, ast.Constant)]
     return len(counting) == sum(one == name for one in names(tree))
+
+
+def _reads(function: FunctionType, name: str) -> bool:
+    """Whether anything else beside a function, or a class's method, has a global's name."""
+    beside = [*function.__globals__.values()]
+    beside += [one for x in beside if isinstance(x, type) for one in vars(x).values()]
+    codes = (x.__code__ for x in beside if isinstance(x, FunctionType))
+    return any(name in used_in(code) for code in codes if code is not function.__code__)
 
 
 def _arithmetic(module: str) -> bool:
