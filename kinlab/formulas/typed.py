@@ -1225,7 +1225,6 @@ _SPEED_SQUARED = re.compile(r"\\?\|?v(?:_\{?\w{1,3}\}?)?\|?\s*(?:(?:\^|\*\*)\s*\
 _PLACES = re.compile(r"(\D+?)[_\[]?([\d,]*)\]?", re.ASCII)
 
 
-_OF_A_POINT = ("x", "y", "z", "px", "py", "pz", "p_x", "p_y", "p_z")
 _OF_NO_POINT = (
     "j", "jacobian", "planar_jacobian", "m", "mass_matrix", "c", "coriolis_matrix", "g",
     "gravity_torques", "tau", "inverse_dynamics", "statics", "v", "t", "l", "det",
@@ -1250,7 +1249,7 @@ def of_one_name(left: str, name: str) -> bool:
         return whole and (head == mine or any(mine in group for group in known))
     if not known and not places and head != mine:
         pose = mine == "t" and wanted != ""
-        return head not in _OF_A_POINT or mine not in _OF_NO_POINT or pose
+        return head.replace("_", "") not in _POINT or mine not in _OF_NO_POINT or pose
     if places != wanted and (places or wanted not in ("", "1")):
         return False
     if {mine, head} <= {*_POSES, "r"} and (mine == "r" or _ROTATION.fullmatch(places)):

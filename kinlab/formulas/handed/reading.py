@@ -13,7 +13,6 @@ from kinlab.formulas.handed.rates import MOVING, plain_rates
 from kinlab.formulas.handed.units import with_units_inside, without_units
 from kinlab.formulas.language.clauses import Holds, without_clauses
 from kinlab.formulas.language.prose import doubtful
-from kinlab.formulas.language.sentences import sides_left_out
 from kinlab.formulas.language.words import (
     refuse_comments,
     without_remark_behind,
@@ -250,8 +249,8 @@ def as_formula(
     text = without_code(text, not several and bool(_ALONE.fullmatch(entry)))
     text = undressed(text, entry)
     text = _behind(text)
-    whole, text = text, without_words(text, entry, place)
-    steps += [unjudged.format(words=one) for one in sides_left_out(whole, text)]
+    text, left = without_words(text, entry, place)
+    steps += [unjudged.format(words=one) for one in left]
     text = plain_rates(text)
     text, said = without_constant(without_units(text, entry, place), entry)
     return (

@@ -103,16 +103,26 @@ _NEXT_LINE = re.compile(
 _SIGNS = re.compile(r"[_{}\\\s$&]")
 
 
-def without_sentences(text: str, entry: str) -> str:
+def without_sentences(text: str, entry: str) -> tuple[str, list[str]]:
     """The equations of a text with words; the text as it is where there are no words.
 
     Args:
         text: as typed.
         entry: what the formula is asked for.
+
+    Returns:
+        Them; and the sides of equations with words, or a derivative, in place of a name that are
+        left out: ``V = ..., its derivative = ...``.
     """
     if _PROGRAM.search(text) or len(_WORD.findall(text)) > _MOST:
-        return text
-    text, marked = _without_words(text)
+        return text, []
+    opened, marked = _without_words(text)
+    kept = _kept(opened, marked, entry)
+    return kept, _left_out(_pieces(marked), kept) if "=" in text and kept != text else []
+
+
+def _kept(text: str, marked: str, entry: str) -> str:
+    """The equation of the entry, with those that explain its names."""
     if _GAP not in marked and MATHS.search(marked) and "=" in MATHS.sub(" ", marked):
         lines = MATHS.sub(lambda found: f";\n{_bare(found[0])};\n", marked).split(";\n")
         return f"${';'.join(line.strip() for line in lines if line.strip())}$"
@@ -128,24 +138,15 @@ def without_sentences(text: str, entry: str) -> str:
     return f"${told}$" if dollars else told
 
 
-def sides_left_out(text: str, kept: str) -> list[str]:
-    """Sides of equations with words, or a derivative, in place of a name.
-
-    ``V = ..., its derivative = ...``
-
-    Args:
-        text: as typed.
-        kept: what :func:`without_sentences` has of it.
-    """
-    if "=" not in text or text == kept or _PROGRAM.search(text):
-        return []
-    pieces = [_bare(piece) for piece in _pieces(_without_words(text)[1])]
+def _left_out(pieces: list[str], kept: str) -> list[str]:
+    """What of the pieces is neither judged nor has a name by which it is told."""
+    pieces = [*map(_bare, pieces)]
     judged = {_plain(side) for one in re.split(r"[;\n]", kept) for side in one.split("=")}
     found = [one for one in _behind_an_equation(pieces) if _plain(one) not in judged]
     for left, *sides in (one.split("=") for piece in pieces for one in _equations(piece)):
         name = left.strip("& ,:").rpartition(" ")[2]
         word = len(name) > 1 and (is_listed(name) or _is_said(name))
-        if not name or word or _OF_A_STEP.search(left):
+        if not name or word or _DERIVED.search(left):
             sides = [x.strip() for x in sides if _plain(x) not in judged]
             found += [f"= {one}" for one in sides if re.search(r"\d|[*/^+(\\]", one)]
     return found
@@ -155,14 +156,14 @@ def _behind_an_equation(pieces: list[str]) -> list[str]:
     """Sums without a sign of equality behind an equation: what words say of them is not known."""
     begun = next((k for k, one in enumerate(pieces) if "=" in one), len(pieces))
     plain = [one.strip(" ,.;:") for one in pieces[begun:] if "=" not in one]
-    return [one for one in plain if re.search(r"\d", one) and _A_STEP.search(one)]
+    return [one for one in plain if re.search(r"\d", one) and _SUM_OR_DECIMALS.search(one)]
 
 
-_A_STEP = re.compile(r"[A-Za-zα-ω]\w*[^\w+−-]*[+−-]\s*[\w\\(]|^[−-]?\d+\.\d+(?![.\d])")
+_SUM_OR_DECIMALS = re.compile(r"[A-Za-zα-ω]\w*[^\w+−-]*[+−-]\s*[\w\\(]|^[−-]?\d+\.\d+(?![.\d])")
 """A sum with names, or a number with decimals."""
 
 
-_OF_A_STEP = re.compile(
+_DERIVED = re.compile(
     r"d\s?/\s?d\s?t|∂|\\partial|\\frac\s?\{\s?(?:\\mathrm\s?\{\s?)?d|\bd\w+\s?/\s?d\w"
 )
 """A derivative."""
@@ -213,8 +214,7 @@ def _joined(text: str) -> str:
         if found is None or not _ends_formula(front[: found.start()].rstrip("$ ")):
             continue
         words = re.findall(rf"[{LATIN}][{LATIN}.'’-]*|[{CHINESE}]+", found["words"])
-        bracketed = front[found.start() :].lstrip("$ \n\t")[:1] in ("(", "（", "[")
-        said = all(_is_said(x) for x in words) if bracketed else all(map(is_linking, words))
+        said = all(map(_is_said if found.re is _IN_BRACKETS else is_linking, words))
         if words and said and not _OTHERWISE.search(found["words"]):
             dollars = found["dollar"] + ("$" if sign[0].startswith("$") else "")
             rest = text[sign.start() :].lstrip("$") if dollars else text[sign.start() :]

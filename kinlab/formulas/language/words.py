@@ -173,13 +173,16 @@ _MORE = re.compile(
 """The same, behind it: what is still to be added."""
 
 
-def without_words(text: str, entry: str, place: str) -> str:
+def without_words(text: str, entry: str, place: str) -> tuple[str, list[str]]:
     """The text without the words around the formula.
 
     Args:
         text: as typed.
         entry: what the formula is asked for.
         place: what to put in front of a message.
+
+    Returns:
+        It; and what of its equations is left out, as :func:`without_sentences` has it.
 
     Raises:
         ExpressionError: words that may change what a name means.
@@ -191,8 +194,8 @@ def without_words(text: str, entry: str, place: str) -> str:
     found = _HEAD.match(text)
     if found and _is_name(found[1], entry) and "=" not in text:
         text = f"{found[1]} = {text[found.end() :]}"
-    plain = without_sentences(text, entry)
-    return _HEADING.sub("", text) if plain == text else plain
+    plain, left = without_sentences(text, entry)
+    return (_HEADING.sub("", text), []) if plain == text else (plain, left)
 
 
 _HEADING = re.compile(

@@ -316,7 +316,7 @@ def as_entries(question: Question, given: Mapping[str, str], sheet: Sheet) -> di
         if whole and several(text, default):
             named[default] = text
             continue
-        said = claims(without_sentences(text, question.entry), name or default) or name
+        said = claims(without_sentences(text, question.entry)[0], name or default) or name
         said = said if said == question.entry else _coordinate(said)
         if said in ("", question.id, question.entry, default, shown, _head(question)):
             named[default] = text

@@ -783,17 +783,15 @@ def _other_of_two(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     for own in counters if len(keys) > 1 else ():
         for other in sorted({*scope.counters} - {*counters}):
             new = OtherName(own, other).visit(copied(here.node))
-            taken = _are_taken_from_each_other(here.above[0], own, other)
+            taken = _are_taken_from_each_other(scope, own, other)
             for op, cost in ((ast.Sub(), _DIFFERENCE if taken else 1.1), (ast.Add(), 1.12)):
                 yield here.instead(ast.BinOp(here.node, op, new), "missing term", cost)
 
 
-def _are_taken_from_each_other(tree: ast.AST, own: str, other: str) -> bool:
+def _are_taken_from_each_other(scope: Scope, own: str, other: str) -> bool:
     """Whether an entry with one counter is taken from that with another: ``phi[i] - phi[j]``."""
-    every = (x for x in nodes(tree) if isinstance(x, ast.BinOp) and isinstance(x.op, ast.Sub))
-    pairs = [{text_of(x.left), text_of(x.right)} for x in every]
-    halves = ({f"{name}[{k}]" for k in (own, other)} for name in {*names(tree)})
-    return any(both in pairs for both in halves)
+    halves = ({f"{name}[{k}]" for k in (own, other)} for name in scope.shapes)
+    return any(frozenset(both) in scope.differences for both in halves)
 
 
 def _terms_of_others(here: Here, scope: Scope, siblings: set[str]) -> Iterator[ProgramEdit]:

@@ -5,11 +5,10 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TypeGuard
 
 import numpy as np
 
-from kinlab.doctor.bytecode.syntax import copied, nodes, text_of
+from kinlab.doctor.bytecode.syntax import copied, names, nodes, text_of
 from kinlab.doctor.program.edits.chains import SUMS, chain
 from kinlab.doctor.program.edits.numbers.as_the_arm import matrix_typed, typed
 from kinlab.doctor.program.observed import Observed
@@ -51,34 +50,26 @@ def tool_behind_a_loop(
 ) -> Iterator[ProgramEdit]:
     """The tool's transform behind a loop that goes from frame to frame: ``T = T @ tool``."""
     tool = np.round(np.asarray(table.tool, dtype=float), _DECIMALS) + 0.0
-    for node, block in ((x, x.body) for x in nodes(tree) if isinstance(x, ast.FunctionDef)):
-        for at, loop in enumerate(block):
-            if not isinstance(loop, ast.For):
-                continue
-            behind = {x.id for line in block[at + 1 :] for x in nodes(line) if _is_read(x)}
+    for function in (x for x in nodes(tree) if isinstance(x, ast.FunctionDef)):
+        block = function.body
+        for at, loop in ((k, x) for k, x in enumerate(block, 1) if isinstance(x, ast.For)):
+            behind = {name for line in block[at:] for name in names(line, ast.Load)}
             for name in sorted(behind.intersection(_carried_on(loop, observed))):
                 product = ast.BinOp(ast.Name(name, ast.Load()), ast.MatMult(), matrix_typed(tool))
                 line = ast.Assign([ast.Name(name, ast.Store())], product)
-                edit = line_more(part, node, "body", block, at + 1, line, _BEHIND)
+                edit = line_more(part, function, "body", block, at, line, _BEHIND)
                 yield replace(edit, of_the_arm=True)
-
-
-def _is_read(node: ast.AST) -> TypeGuard[ast.Name]:
-    return isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)
 
 
 def _carried_on(loop: ast.For, observed: Observed) -> Iterator[str]:
     """The transforms that a loop multiplies by another each time: ``T = T @ A``."""
     for line in nodes(loop):
-        if not isinstance(line, ast.Assign) or not isinstance(line.value, ast.BinOp):
+        if not isinstance(line, ast.Assign):
             continue
-        first: ast.expr = line.value
-        while isinstance(first, ast.BinOp) and isinstance(first.op, ast.MatMult):
-            first = first.left
-        target = line.targets[0]
-        same = isinstance(first, ast.Name) and text_of(target) == first.id
-        if same and observed.shape(first) == (4, 4):
-            yield text_of(target)
+        first, others = chain(line.value, (ast.MatMult,))
+        carried = others and isinstance(first, ast.Name) and observed.shape(first) == (4, 4)
+        if carried and text_of(first) == text_of(line.targets[0]):
+            yield text_of(first)
 
 
 def rotors_left_out(here: Here, table: DHTable) -> Iterator[ProgramEdit]:

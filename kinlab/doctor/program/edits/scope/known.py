@@ -62,6 +62,7 @@ class Knowledge:
         present, set_at: the names that it has, and the lines in which it sets them first.
         fronts: names in what stands in front of any product of matrices.
         divisors: what something is divided by, as text.
+        differences: the two sides of each difference, as text.
         pi: how the program may write it; None where it cannot.
         root: what gives square roots, where it is known.
         cross: what gives the product of two vectors, where it is known.
@@ -126,6 +127,7 @@ class Knowledge:
     def _take_sums_apart(self, tree: ast.AST) -> None:
         """The terms and factors of its sums and products."""
         self.divisors, self.fronts = terms.divisors_of(tree), terms.fronts_of(tree)
+        self.differences = terms.differences_of(tree)
         self.addends, self.factors = terms.addends_of(tree), terms.factors_of(tree)
         self.inner = terms.inner_terms_of(tree, self.observed)
 

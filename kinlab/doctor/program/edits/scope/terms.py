@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 
-from kinlab.doctor.bytecode.syntax import names, nodes
+from kinlab.doctor.bytecode.syntax import names, nodes, text_of
 from kinlab.doctor.program.edits.chains import without_numbers
 from kinlab.doctor.program.edits.scope.forms import entries, stem_of, summands
 from kinlab.doctor.program.observed import Observed
@@ -13,6 +13,11 @@ from kinlab.doctor.program.observed import Observed
 def divisors_of(tree: ast.AST) -> set[str]:
     """What something is divided by, as text."""
     return {ast.unparse(x.right) for x in _operations(tree, ast.Div)}
+
+
+def differences_of(tree: ast.AST) -> set[frozenset[str]]:
+    """The two sides of each difference, as text."""
+    return {frozenset({text_of(x.left), text_of(x.right)}) for x in _operations(tree, ast.Sub)}
 
 
 def fronts_of(tree: ast.AST) -> set[str]:
