@@ -195,8 +195,8 @@ def which(old: ast.expr, new: ast.expr) -> str:
 
 
 def minus(node: ast.expr) -> ast.expr:
-    if isinstance(node, ast.BinOp) and isinstance(node.left, ast.UnaryOp):
-        return ast.BinOp(node.left.operand, node.op, node.right)
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult | ast.Div | ast.MatMult):
+        return ast.BinOp(minus(node.left), node.op, again(node.right))
     return node.operand if isinstance(node, ast.UnaryOp) else ast.UnaryOp(ast.USub(), again(node))
 
 

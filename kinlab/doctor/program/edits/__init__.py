@@ -10,6 +10,7 @@ module            what it holds
                   term
 ``composites``    What is missing of several names at once: a cross product, a moment about another
                   axis
+``counterparts``  Terms like those of a sum with other names throughout
 ``elsewhere``     What a program has elsewhere in the same company, or in the line of another link
 ``every``         What could stand in a place of a program instead
 ``exchanges``     What a slip moves together: two names for one another, one name throughout a

@@ -20,6 +20,7 @@ from kinlab.doctor.program.edits.additions import as_a_term
 from kinlab.doctor.program.edits.blocks import of_blocks
 from kinlab.doctor.program.edits.chains import SUMS
 from kinlab.doctor.program.edits.composites import of_composites
+from kinlab.doctor.program.edits.counterparts import of_counterparts
 from kinlab.doctor.program.edits.elsewhere import Elsewhere
 from kinlab.doctor.program.edits.forgotten import (
     across,
@@ -37,6 +38,11 @@ from kinlab.doctor.program.edits.frames import (
 )
 from kinlab.doctor.program.edits.guards import choices, masks, of_guards
 from kinlab.doctor.program.edits.numbers.data import of_data
+from kinlab.doctor.program.edits.numbers.kinds import (
+    of_kinds_held,
+    of_kinds_typed,
+    words_of_kinds,
+)
 from kinlab.doctor.program.edits.scope.forms import statement_of, summands
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.calls import begun_as_a_copy, of_call
@@ -107,6 +113,7 @@ def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[Pro
     found: list[ProgramEdit] = []
     elsewhere = Elsewhere(trial, observed)
     own_parts = {one.name for one in trial.program.parts}
+    compared = words_of_kinds(trial)
     for part, tree in enumerate(trial.trees):
         scope, by = scopes[part], (masks(tree), choices(tree))
         columns = columns_of(tree, observed)
@@ -143,11 +150,14 @@ def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[Pro
                     ]
                 elif isinstance(node, ast.Constant) and isinstance(node.value, str):
                     found += of_letters(here)
+                    found += of_kinds_typed(here, compared)
                     found += of_subscripts(here, observed, scope)
             elif isinstance(node, ast.stmt):
                 found += _statement(here, scope, observed)
         found += of_blocks(part, tree, scope, observed)
+        found += of_counterparts(part, tree)
     found += of_data(trial)
+    found += of_kinds_held(trial)
     # of equal ones the later line: what is set there is used more rarely
     return sorted(found, key=lambda edit: (edit.cost, edit.part, -_line(edit)))
 

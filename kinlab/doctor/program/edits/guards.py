@@ -64,13 +64,14 @@ def of_guards(
     op = getattr(here.parent, "op", None)
     if shape == _VECTOR and isinstance(op, ast.MatMult) and isinstance(node, ast.Name):
         yield from _of_a_slide(here, scope, tests)
-    if not isinstance(op, ast.Add | ast.Sub) or shape is None:
+    along = _is_rate_along_an_axis(here, observed)
+    if not (isinstance(op, ast.Add | ast.Sub) or along) or shape is None:
         return
     if not isinstance(node, ast.Name | ast.Subscript | ast.Attribute | ast.Call):
         return
     nothing = ast.Constant(0)
     if shape == ():
-        for test in _tests_here(scope, tests):
+        for test in _tests_here(here, scope, tests):
             for both in ((nothing, node), (node, nothing)):
                 yield here.instead(ast.IfExp(test, *both), "condition", _GUARDED)
     elif len(shape) == 1 and scope.has_numpy:
@@ -81,6 +82,16 @@ def of_guards(
                 yield here.instead(chosen, "condition", _GUARDED)
 
 
+def _is_rate_along_an_axis(here: Here, observed: Observed) -> bool:
+    """Whether it is the entry of an array in front of an axis: ``rate[i]*z``."""
+    product = here.parent
+    if not isinstance(here.node, ast.Subscript) or not isinstance(product, ast.BinOp):
+        return False
+    other = product.right if product.left is here.node else product.left
+    along = isinstance(product.op, ast.Mult) and observed.shape(other) == _VECTOR
+    return along and isinstance(other, ast.Name | ast.Subscript)
+
+
 def _of_the_other_case(
     here: Here, scope: Scope, tests: dict[str, ast.expr], shape: Shape
 ) -> Iterator[ProgramEdit]:
@@ -88,7 +99,7 @@ def _of_the_other_case(
     idle = sorted(one for one in scope.unused if scope.shapes.get(one) == shape)
     inside = isinstance(here.parent, ast.BinOp | ast.UnaryOp | ast.IfExp)
     cost = _GUARDED + _PART * inside
-    for test in _tests_here(scope, tests) if idle else ():
+    for test in _tests_here(here, scope, tests) if idle else ():
         for other in (ast.Name(one, ast.Load()) for one in idle):
             for both in ((here.node, other), (other, here.node)):
                 yield here.instead(ast.IfExp(test, *both), "condition", cost)
@@ -115,9 +126,12 @@ def _added(line: ast.stmt) -> Iterator[ast.expr]:
             yield line.value.right
 
 
-def _tests_here(scope: Scope, tests: dict[str, ast.expr]) -> list[ast.expr]:
+def _tests_here(here: Here, scope: Scope, tests: dict[str, ast.expr]) -> list[ast.expr]:
     """Of the conditions by which numbers are chosen those that may stand there, and others."""
-    inside = {*scope.shapes, *scope.counting}
+    block, at = block_of(here.above)
+    lines = [line for line in block[:at] if isinstance(line, ast.Assign)]
+    above = (name for line in lines for to in line.targets for name in names(to))
+    inside = {*scope.shapes, *scope.counting, *above}
     own = {text: one for text, one in tests.items() if inside.issuperset(names(one))}
     return [*(own | {ast.unparse(one): one for one in scope.tests_here()}).values()]
 
@@ -141,7 +155,7 @@ def _tests_of_rows(here: Here, scope: Scope) -> Iterator[ast.expr]:
 def _of_a_slide(here: Here, scope: Scope, tests: dict[str, ast.expr]) -> Iterator[ProgramEdit]:
     """The force for a slide where the moment is for a hinge: ``z @ (f if slides[i] else n)``."""
     others = [one for text, one in scope.simple(_VECTOR) if text != ast.unparse(here.node)]
-    for test in _tests_here(scope, tests):
+    for test in _tests_here(here, scope, tests):
         for other in (one for one in others if isinstance(one, ast.Name)):
             for both in ((other, here.node), (here.node, other)):
                 yield here.instead(ast.IfExp(test, *both), "condition", _CHOSEN)
@@ -157,7 +171,7 @@ def _of_columns(here: Here, scope: Scope, tests: dict[str, ast.expr]) -> Iterato
     axes = [one for text, one in scope.simple(_VECTOR) if text != own and text in own]
     others = [ast.Constant(0), *(one for one in axes if isinstance(one, ast.Name))]
     decided = {ast.unparse(one.test) for one in here.above if isinstance(one, ast.If)}
-    every = [*_tests_here(scope, tests), *_tests_of_rows(here, scope)]
+    every = [*_tests_here(here, scope, tests), *_tests_of_rows(here, scope)]
     for test in (one for one in every if ast.unparse(one) not in decided):
         for other in others:
             for both in ((other, here.node), (here.node, other)):

@@ -85,6 +85,8 @@ _STATES = ("q", "qd", "qdd", "positions", "velocities", "accelerations", "given"
 """What is given: another name for it may be meant to be more."""
 _OF_THE_WHOLE = (*_WHOLLY, "transposed", "missing matrix", "missing term")
 """Kinds of edit that may as well stand where a value is worked out."""
+_OF_A_TWIST = "vwlop"
+"""Last letters of names for the two halves of a twist: ``Jv``, ``Jw``; ``Jl``, ``Jo``."""
 _CENTRES, _MASSES = ("lc", "lg", "ac", "rc"), ("m", "mass")
 """Names of the centre of a link, and of its mass, without their numbers."""
 _SPOILING = ("sign", "factor", "number", "power", "parentheses", "extra term", "missing factor")
@@ -143,6 +145,13 @@ class Grounds:
         }
         self.agreed = {id(node) for tree in trial.trees for node in self._agreed(tree)}
         self.silent = self._silent()
+        taken = (
+            node.right
+            for tree in trial.trees
+            for node in nodes(tree)
+            if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Sub)
+        )
+        self.downhill = {name for one in taken for name in _gradients(one)}
         self.parts = {part.name for part in trial.program.parts[1:]}
         every = (node for tree in trial.trees for node in nodes(tree))
         self.turned = {_turned_part(node) for node in every} - {None}
@@ -186,6 +195,8 @@ class Grounds:
             return _SPOILED
         if edit.kind == "sign" and (self._is_typed(edit.node) or self._mirrors(edit)):
             return _SPOILED
+        if edit.kind == "sign" and (_goes_uphill(edit) or self._takes_a_mass_away(edit)):
+            return _SPOILED
         if edit.kind == "missing matrix" and self._turns_a_table(edit):
             return _SPOILED
         if edit.kind in ("missing term", "transposed") and id(edit.node) in self.shared:
@@ -193,7 +204,7 @@ class Grounds:
         if self.coincident(edit):
             return _COINCIDENT
         mirrored = edit.kind == "sign" and edit.part in self.mirrored
-        if mirrored or self._makes_a_chain(edit):
+        if mirrored or self._makes_a_chain(edit) or self._turns_a_gradient(edit):
             return -_MEANT
         unlike_ = self._adds_unlike(edit.changes[0].new) or self._takes_another_centre(edit)
         more = _UNLIKE if unlike_ or self._spoils_a_number(edit) else 0.0
@@ -290,6 +301,32 @@ class Grounds:
         if first is None or last is None:
             return False
         return first == (kind, start, last[1]) and last == (kind, first[2], end)
+
+    def _turns_a_gradient(self, edit: ProgramEdit) -> bool:
+        """Whether an edit turns round all that is called a gradient, and is taken away later:
+        ``grad = -J.T @ (target - x)``; or takes away one that was added.
+        """
+        change = edit.changes[0]
+        if isinstance(change.new, ast.Sub) and isinstance(change.holder, ast.BinOp):
+            return edit.kind == "sign" and any(_gradients(change.holder.right))
+        whole = isinstance(change.holder, ast.Assign) and change.field == "value"
+        targets = change.holder.targets if edit.kind == "sign" and whole else []
+        return any(isinstance(one, ast.Name) and one.id in self.downhill for one in targets)
+
+    def _takes_a_mass_away(self, edit: ProgramEdit) -> bool:
+        """Whether a term that holds a mass is taken from another, both the arm's own numbers:
+        ``m*lc - M*l`` for ``m*lc + M*l``. Masses add up.
+        """
+        holder = edit.changes[0].holder
+        if not isinstance(holder, ast.BinOp) or not isinstance(holder.op, ast.Add):
+            return False
+        sides = [self.observed.of(x) for x in (holder.left, holder.right)]
+        rows = [[] if x is None or x.shape != () else [*map(float, x.values)] for x in sides]
+        fixed = all(_TWICE * len({*row}) <= len(row) for row in rows)  # at every state the same
+        return fixed and all(
+            row and min(row) > 0 and any(kinds_called(name) == ("mass",) for name in names(side))
+            for row, side in zip(rows, (holder.left, holder.right), strict=True)
+        )
 
     def _is_typed(self, node: Any) -> bool:
         """Whether it is an array of several numbers that are typed, whose signs are their own."""
@@ -682,6 +719,18 @@ def _renamed(tree: ast.AST) -> set[str]:
     return {one.id for one, _what in every if isinstance(one, ast.Name)}
 
 
+def _goes_uphill(edit: ProgramEdit) -> bool:
+    """Whether an edit adds what is called a gradient, and was taken away: ``q + rate*grad``."""
+    change = edit.changes[0]
+    added = isinstance(change.new, ast.Add) and isinstance(change.holder, ast.BinOp)
+    return added and any(_gradients(change.holder.right))
+
+
+def _gradients(node: ast.expr) -> Iterator[str]:
+    """The names in an expression that gradients have."""
+    return (name for name in names(node) if name.lower().startswith("grad"))
+
+
 def _about_the_other(edit: ProgramEdit) -> bool:
     """Whether one right thing becomes another: a rod's moment about its middle that about its end,
     and the vector ``append(r, 0)`` a point.
@@ -730,10 +779,14 @@ def _is_rotation(value: Array) -> bool:
 
 
 def _turned_part(node: Any) -> tuple[str, str] | None:
-    """The matrix and the name in ``R @ wrench[:3]``; None of anything else."""
+    """The matrix and the name in ``R @ wrench[:3]``, and what names such as ``Jv`` and ``Jw`` have
+    in common in ``R @ Jv``; None of anything else.
+    """
     if not isinstance(node, ast.BinOp) or not isinstance(node.op, ast.MatMult):
         return None
     part = node.right
+    if isinstance(part, ast.Name) and part.id[-1] in _OF_A_TWIST and part.id[:-1].isalpha():
+        return ast.dump(node.left), part.id[:-1]
     if not isinstance(part, ast.Subscript) or not isinstance(part.slice, ast.Slice):
         return None
     return ast.dump(node.left), ast.dump(part.value)

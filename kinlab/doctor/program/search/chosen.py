@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from kinlab.doctor.changes import table_of
 from kinlab.doctor.glossary.textbook import Glossary
 from kinlab.doctor.linkages.five_bar import numbers_of
 from kinlab.doctor.program.edits.every import edits
-from kinlab.doctor.program.edits.numbers.as_the_arm import as_it_is, of_table
+from kinlab.doctor.program.edits.numbers.as_the_arm import as_it_is, of_table, with_other_signs
 from kinlab.doctor.program.edits.numbers.data import is_gravity
 from kinlab.doctor.program.edits.numbers.own_numbers import of_own_numbers
 from kinlab.doctor.program.edits.scope.forms import summands
@@ -25,7 +26,7 @@ from kinlab.doctor.program.grounds.called import kinds_called
 from kinlab.doctor.program.grounds.dimensions import LIKE, Dimensions
 from kinlab.doctor.program.grounds.lacking import lacking_terms
 from kinlab.doctor.program.grounds.products import missing_products
-from kinlab.doctor.program.grounds.scaled import is_own, own_rows
+from kinlab.doctor.program.grounds.scaled import is_free, is_own, own_rows
 from kinlab.doctor.program.grounds.terms import missing_terms
 from kinlab.doctor.program.grounds.unread import unread_terms
 from kinlab.doctor.program.observed import Observed
@@ -78,6 +79,7 @@ def chosen(
     scopes = [Scope(trial, observed, k) for k in range(len(trial.trees))]
     every = edits(trial, observed, scopes)
     every += of_table(trial, observed, robot)
+    every += with_other_signs(trial, observed, partial(_is_turned, robot))
     every += of_centres(trial, observed, robot)
     every += of_own_numbers(trial, observed, robot, *map(asked.watched_of, ("q", "a")))
     every += missing_products(trial, observed, scopes, dimensions)
@@ -290,6 +292,11 @@ def _of_sign(edit: ProgramEdit, observed: Observed, robot: Any) -> float:
     if cost > _OWN and old == -new and is_own(robot, new) and not is_own(robot, old):
         return _OWN
     return cost
+
+
+def _is_turned(robot: Any, value: float) -> bool:
+    """Whether a number is not the robot's, and its opposite is."""
+    return is_free(value) and is_own(robot, -value) and not is_own(robot, value)
 
 
 def _moves_one_of(rows: list[Array], edit: ProgramEdit) -> bool:

@@ -238,7 +238,8 @@ class LineSearch:
                 every = [x for x in every if x.part != DATA and (x.part, row_of(x)) in self.rows]
             every = [edit for edit in every if not self.evidence.spoils_a_helper(edit)]
             more = self._waits()
-            dear = {edit: self.likely(edit) + more[edit.part] for edit in every}
+            likely = {edit: self.likely(edit) for edit in every}
+            dear = {edit: cost + more[edit.part] for edit, cost in likely.items()}
             tried = self._in_turn(sorted(every, key=dear.__getitem__))
             if sum(map(self.work.of, tried)) > limit:
                 self.ahead = self._ahead(tried, limit // _UNITS)
@@ -246,7 +247,7 @@ class LineSearch:
             variants = Variants(self.trial, tried)
             for turn, edit in enumerate(tried):
                 farthest = best + (_DOUBTED if doubted else _TIED)
-                if found and self.likely(edit) > farthest:
+                if found and likely[edit] > farthest:
                     continue
                 self.work.done += self.work.of(edit)
                 if self.work.done > limit or (self.heavy and turn == _FIRST and not found):
@@ -264,7 +265,7 @@ class LineSearch:
                 if repair is not None:
                     found.append(repair)
                     rough = repair.error > TOLERANCES.formula_agrees
-                    best = min(best, self.likely(edit) + _ROUGH * rough)
+                    best = min(best, likely[edit] + _ROUGH * rough)
                     doubted = doubted or self.evidence.coincident(edit)
             found = found or ([] if self.stand else self.parallel[:1])
             found = self._by_name(self._by_evidence(found))

@@ -14,8 +14,9 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import called, nodes
 from kinlab.doctor.changes import table_of
+from kinlab.doctor.derivations.words import minus
 from kinlab.doctor.program.edits.numbers.data import NumberPlace, leaves, shown, together
-from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.observed import Observed, Seen
 from kinlab.doctor.program.places import DATA, ProgramEdit, is_nothing, number, places
 from kinlab.doctor.program.trial import FieldChange, Trial
 from kinlab.fivebar import FiveBar
@@ -97,7 +98,9 @@ def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
 
 
 def _of_tensors(trial: Trial, observed: Observed, table: DHTable) -> Iterator[ProgramEdit]:
-    """Numbers of a matrix that is a link's tensor but for one number, or for one and its mirror."""
+    """Numbers of a matrix that is a link's tensor but for one number, or for one and its mirror, or
+    for the signs of its products of inertia.
+    """
     own = [np.asarray(link.inertia, dtype=float) for link in table.links]
     for cells in _matrices(trial, observed):
         values = np.array([[cell.value for cell in row] for row in cells])
@@ -107,6 +110,37 @@ def _of_tensors(trial: Trial, observed: Observed, table: DHTable) -> Iterator[Pr
             if mirrored and np.count_nonzero(tensor) > np.count_nonzero(tensor[tuple(off.T)]) + 1:
                 for i, k in off:
                     yield cells[i][k].edit(float(tensor[i, k]))
+            elif len(off) > 1 and all(i != k and values[i, k] == -tensor[i, k] for i, k in off):
+                every = [cell for row in cells for cell in row]  # products with the other sign
+                some = [(cells[i][k], float(tensor[i, k])) for i, k in off]
+                yield replace(_row(some, every, False), kind="sign")
+
+
+def with_other_signs(
+    trial: Trial, observed: Observed, turned: Callable[[float], bool]
+) -> Iterator[ProgramEdit]:
+    """Several numbers of a row that are the arm's with the other sign.
+
+    Args:
+        trial, observed: the program.
+        turned: whether a number is not the arm's, and its opposite is.
+    """
+    held: dict[Any, list[_Cell]] = {}
+    for leaf in leaves(trial):
+        if leaf.place:
+            cell = _Cell(float(leaf.value), leaf)
+            held.setdefault((leaf.node, leaf.place[:-1]), []).append(cell)
+    rows: list[tuple[Any, list[_Cell]]] = [(None, cells) for cells in held.values()]
+    for part, tree in enumerate(trial.trees):
+        for row in nodes(tree):
+            if isinstance(row, ast.Call | ast.List | ast.Tuple):
+                given = (_cell(observed, part, *at) for _key, *at in _cells([row], 0, row))
+                rows.append((row, [cell for cell in given if cell is not None]))
+    for node, cells in rows:
+        some = [(x, -x.value) for x in cells if turned(x.value)]
+        if len(some) > 1:
+            edit = replace(_row(some, cells, False), kind="sign")
+            yield edit if node is None else replace(edit, node=node)
 
 
 def _matrices(trial: Trial, observed: Observed) -> Iterator[list[list[_Cell]]]:
@@ -316,7 +350,8 @@ class _Cell:
         kind = "sign" if right == -self.value else "number"
         if self.place is not None:
             return self.place.edit(right, kind, _COST)
-        change = FieldChange(self.holder, self.field, typed(right))
+        new = minus(self.node) if kind == "sign" else typed(right)
+        change = FieldChange(self.holder, self.field, new)
         both = (self.value, right)
         return ProgramEdit(
             self.part, (change,), kind, _COST, self.node, numbers=both, of_the_arm=True
@@ -468,15 +503,27 @@ def _cell(observed: Observed, part: int, holder: Any, field: Any) -> _Cell | Non
     """What stands at a place, if it is a number as somebody types it."""
     node = FieldChange(holder, field, None).now
     seen = observed.of(node)
-    names_ = {one.id for one in nodes(node) if isinstance(one, ast.Name)}
-    plain = names_ <= {"np", "numpy", "math", "pi"}
-    if not plain or not all(isinstance(one, _TYPED) for one in nodes(node)):
+    if not all(isinstance(one, _TYPED) for one in nodes(node)):
+        return None
+    named = [one for one in nodes(node) if isinstance(one, ast.Name)]
+    if not all(one.id in _OF_PI or _is_of_angles(observed.of(one)) for one in named):
         return None
     if seen is None or seen.shape != () or not seen.values:
         return None
     return _Cell(float(seen.values[0]), None, part, holder, field, node)
 
 
+_OF_PI = ("np", "numpy", "math", "pi")
+
+
+def _is_of_angles(seen: Seen | None) -> bool:
+    """Whether a name is of pi, a right angle or a degree: ``90*deg``."""
+    if seen is None or seen.shape != () or not seen.values:
+        return False
+    return any(all(_same(float(x), angle) for x in seen.values) for angle in _ANGLES)
+
+
+_ANGLES = (np.pi, np.pi / 2, np.pi / 180)
 _TYPED = (
     ast.Constant,
     ast.UnaryOp,

@@ -34,6 +34,8 @@ _COMMUTATOR = 1.1
 """Cost of the second half of a commutator, or of a symmetric part, that is not there."""
 _UNTURNED = 1.09
 """Cost of a vector that is turned too many."""
+_MIXED = 1.05
+"""Cost of the terms of a quadratic form that are no squares."""
 _DIVIDED = 1.2
 """Cost of a quotient for a product, or a product for a quotient."""
 DIAGONALS = ("tril", "triu", "eye", "diag")
@@ -89,6 +91,9 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             rest = ast.BinOp(left.right, op, right)
             yield here.instead(ast.BinOp(left.left, left.op, rest), "parentheses", 1.2)
     elif isinstance(op, chains.PRODUCTS):
+        whole_form = _with_mixed_terms(node)
+        if whole_form is not None:
+            yield here.instead(whole_form, "missing term", _MIXED)
         for outer, sum_, name in ((left, right, "right"), (right, left, "left")):
             if isinstance(sum_, ast.BinOp) and isinstance(sum_.op, ast.Add | ast.Sub):
                 # a*(b + c) for a*b + c
@@ -171,6 +176,33 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
         if isinstance(left, ast.BinOp) and isinstance(left.op, ast.Mult):
             last = ast.BinOp(left.right, op, right)
             yield here.instead(ast.BinOp(left.left, left.op, last), "parentheses", 1.12)
+
+
+def _with_mixed_terms(product: ast.BinOp) -> ast.expr | None:
+    """A quadratic form of which the squares alone stand: ``v @ M @ v`` of ``diag(M) @ v**2``."""
+    squared = product.right
+    if not isinstance(squared, ast.BinOp) or not isinstance(squared.op, ast.Pow):
+        return None
+    first, others = chains.chain(product.left, (ast.Mult,))
+    members = [first, *(member for _op, member in others)]
+    square = [
+        k
+        for k, x in enumerate(members)
+        if isinstance(x, ast.Call) and called(x) in ("diag", "diagonal")
+    ]
+    if not chains.is_two(squared.right) or len(square) != 1:
+        return None
+    call, rate = members[square[0]], squared.left
+    assert isinstance(call, ast.Call)
+    owner = getattr(call.func, "value", None)
+    matrix = owner if called(call) == "diagonal" and not call.args else [*call.args, None][0]
+    if matrix is None:
+        return None
+    dotted = isinstance(product.op, ast.MatMult)
+    form: ast.expr = ast.BinOp(rate, ast.MatMult(), matrix)
+    members[square[0]] = form if dotted else ast.BinOp(matrix, ast.MatMult(), rate)
+    scaled = chains.joined(members[0], [(ast.Mult(), one) for one in members[1:]])
+    return ast.BinOp(scaled, product.op, rate)
 
 
 def _is_all(here: Here) -> bool:
