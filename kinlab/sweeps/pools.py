@@ -34,6 +34,8 @@ from kinlab.sweeps.samples import Samples
 _TRIES = 3
 """Times in a row that the workers may die before a chunk is finished."""
 
+_PARTING = 5.0
+"""Seconds for which the executor's own thread is waited for, once its processes have ended."""
 _IN_FLIGHT = 64
 """Chunks handed to an executor that does not tell how many workers it has."""
 
@@ -197,11 +199,14 @@ class Pool:
             return
         # Executor.kill_workers comes with Python 3.14; until then the processes are private
         processes = list((getattr(self.executor, "_processes", None) or {}).values())
+        manager = getattr(self.executor, "_executor_manager_thread", None)
         self.executor.shutdown(wait=False, cancel_futures=True)
         for process in processes:
             process.terminate()
         for process in processes:
             process.join()
+        if manager is not None:  # at the interpreter's end it may close what is written to
+            manager.join(_PARTING)
 
 
 @contextmanager

@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 import tracemalloc
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
@@ -21,6 +22,7 @@ import sweep_measures
 
 import kinlab as kl
 from kinlab.errors import FileError, NameUnknownError, OptionError, StateError, SweepError
+from kinlab.sweeps.pools import Pool
 from kinlab.sweeps.run import missing
 from kinlab.sweeps.samples import BLOCK
 
@@ -232,6 +234,17 @@ def test_a_worker_that_begins_is_silent_too(tmp_path):
     assert process.returncode != 0
     assert stderr.rstrip().endswith("KeyboardInterrupt")
     assert stderr.count("Traceback") == 1
+
+
+def test_a_pool_that_is_closed_leaves_no_thread():
+    """The executor's own thread closes a pipe that the interpreter's end would write to."""
+    before = {*threading.enumerate()}
+    pool = Pool(None, 2)
+    pool.executor.submit(time.sleep, 60)
+    begun = {*threading.enumerate()} - before
+    pool.close()
+    assert begun
+    assert not any(thread.is_alive() for thread in begun)
 
 
 def test_a_part_that_was_half_written_is_swept_away(tmp_path):
