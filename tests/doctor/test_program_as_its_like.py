@@ -1,0 +1,172 @@
+"""What a program lacks is told by what is like it: the arm's own table, a name's counterpart, the
+other half of a twist, the other kind of joint.
+
+Every program is right before the slip; what is said makes it right, and is what was there.
+"""
+
+from __future__ import annotations
+
+import pytest
+from hand_programs import told_in_its_line, with_slips, written
+
+import kinlab as kl
+
+DEGREES = """
+import numpy as np
+deg = np.pi/180
+ROWS = [("R", 0.0, -90*deg, 0.412, 0.0), ("R", 0.0, 90*deg, 0.154, 0.0),
+        ("P", 0.0203, 0.0, 0.0, -90*deg), ("R", 0.0, -90*deg, 0.0, 0.0),
+        ("R", 0.0, 90*deg, 0.0, 0.0), ("R", 0.0, 0.0, 0.263, 0.0)]
+
+def f(q):
+    T = np.eye(4)
+    for (kind, a, al, d, th), x in zip(ROWS, q):
+        th, d = (th + x, d) if kind == "R" else (th, d + x)
+        c, s, ca, sa = np.cos(th), np.sin(th), np.cos(al), np.sin(al)
+        T = T @ np.array([[c, -s*ca, s*sa, a*c], [s, c*ca, -c*sa, a*s], [0, sa, ca, d], [0, 0, 0, 1]])
+    return T
+"""
+KINDS = """
+import numpy as np
+quarter = np.pi/2
+ROWS = [("R", 0.0, -quarter, 0.412, 0.0), ("R", 0.0, quarter, 0.154, 0.0),
+        ("P", 0.0203, 0.0, 0.0, -quarter), ("R", 0.0, -quarter, 0.0, 0.0),
+        ("R", 0.0, quarter, 0.0, 0.0), ("R", 0.0, 0.0, 0.263, 0.0)]
+
+def f(q):
+    T = [np.eye(4)]
+    for k, (_kind, a, al, d, th) in enumerate(ROWS):
+        th, d = (th, d + q[k]) if k == 2 else (th + q[k], d)
+        c, s, ca, sa = np.cos(th), np.sin(th), np.cos(al), np.sin(al)
+        T.append(T[-1] @ np.array([[c, -s*ca, s*sa, a*c], [s, c*ca, -c*sa, a*s], [0, sa, ca, d], [0, 0, 0, 1]]))
+    J = np.zeros((6, 6))
+    for k, row in enumerate(ROWS):
+        z, p = T[k][:3, 2], T[k][:3, 3]
+        if row[0] == "P":
+            J[:3, k] = z
+        else:
+            J[:3, k], J[3:, k] = np.cross(z, T[6][:3, 3] - p), z
+    return J
+"""
+TENSORS = """
+import numpy as np
+ROWS = [(0.0, 0.0), (0.45, 0.0), (0.35, np.pi/2)]
+MASSES = [3.0, 2.0, 1.2]
+CENTRES = np.array([[0.2, 0.02, -0.01], [0.15, -0.01, 0.03], [0.12, 0.03, 0.01]])
+
+def tensor(xx, yy, zz, xy=0.0, yz=0.0):
+    return np.array([[xx, xy, 0.0], [xy, yy, yz], [0.0, yz, zz]])
+
+INERTIAS = [tensor(0.02, 0.08, 0.07), tensor(0.01, 0.04, 0.045),
+            tensor(0.004, 0.012, 0.014, xy=0.001, yz=0.0005)]
+
+def f(q):
+    T, frames, M = np.eye(4), [], np.zeros((3, 3))
+    for (a, al), t in zip(ROWS, q):
+        c, s, ca, sa = np.cos(t), np.sin(t), np.cos(al), np.sin(al)
+        T = T @ np.array([[c, -s, 0, a], [s*ca, c*ca, -sa, 0], [s*sa, c*sa, ca, 0], [0, 0, 0, 1]])
+        frames.append(T)
+    for k, T in enumerate(frames):
+        R, middle = T[:3, :3], T[:3, :3] @ CENTRES[k] + T[:3, 3]
+        Jv, Jw = np.zeros((3, 3)), np.zeros((3, 3))
+        for j in range(k + 1):
+            z, p = frames[j][:3, 2], frames[j][:3, 3]
+            Jv[:, j], Jw[:, j] = np.cross(z, middle - p), z
+        M += MASSES[k]*Jv.T @ Jv + Jw.T @ R @ INERTIAS[k] @ R.T @ Jw
+    return M
+"""
+GRADIENT = """
+import numpy as np
+L = np.array([0.5, 0.4, 0.25])
+
+def f(q, target):
+    t = np.cumsum(q)
+    there = np.array([L @ np.cos(t), L @ np.sin(t), t[-1]])
+    J = np.array([[-L[k:] @ np.sin(t[k:]) for k in range(3)],
+                  [L[k:] @ np.cos(t[k:]) for k in range(3)], [1.0, 1.0, 1.0]])
+    grad = -J.T @ (target - there)
+    return q - 0.1*grad
+"""
+COUNTERPARTS = """
+import numpy as np
+LEGS = [(0.12, 0.3, 0.5), (-0.12, 0.26, 0.54)]
+
+def f(xy, v, a, mode):
+    turns = []
+    for (base, crank, rod), side in zip(LEGS, mode):
+        x, y = xy[0] - base, xy[1]
+        far = np.hypot(x, y)
+        one = np.arctan2(y, x) - side*np.arccos((crank**2 + far**2 - rod**2)/(2*crank*far))
+        two = np.arctan2(y - crank*np.sin(one), x - crank*np.cos(one))
+        B = np.array([[-crank*np.sin(one), -rod*np.sin(two)], [crank*np.cos(one), rod*np.cos(two)]])
+        done, dtwo = np.linalg.solve(B, v)
+        inward = -crank*done**2*np.array([np.cos(one), np.sin(one)]) - rod*dtwo**2*np.array([np.cos(two), np.sin(two)])
+        turns.append(np.linalg.solve(B, a - inward)[0])
+    return np.array(turns)
+"""
+MIXED = """
+import numpy as np
+def f(q, v):
+    c = np.cos(q[1])
+    M = np.array([[2.0*0.25**2 + 2.0*0.25/12 + 1.5*(0.25 + 0.04 + 0.2*c) + 0.02, 1.5*(0.04 + 0.1*c) + 0.02],
+                  [1.5*(0.04 + 0.1*c) + 0.02, 1.5*0.04 + 0.02]])
+    return 0.5*v @ M @ v
+"""
+HALVES = """
+import numpy as np
+A, D = [0.0, -0.425, -0.39225, 0.0, 0.0, 0.0], [0.089159, 0.0, 0.0, 0.10915, 0.09465, 0.0823]
+AL = [np.pi/2, 0.0, 0.0, np.pi/2, -np.pi/2, 0.0]
+
+def f(q):
+    T = [np.eye(4)]
+    for a, d, al, t in zip(A, D, AL, q):
+        c, s, ca, sa = np.cos(t), np.sin(t), np.cos(al), np.sin(al)
+        T.append(T[-1] @ np.array([[c, -s*ca, s*sa, a*c], [s, c*ca, -c*sa, a*s], [0, sa, ca, d], [0, 0, 0, 1]]))
+    R, tip = T[6][:3, :3], T[6][:3, 3]
+    Jv = np.array([np.cross(one[:3, 2], tip - one[:3, 3]) for one in T[:6]]).T
+    Jw = np.array([one[:3, 2] for one in T[:6]]).T
+    upper = R.T @ Jv
+    lower = R.T @ Jw
+    return np.vstack([upper, lower])
+"""
+ONE_KIND = """
+import numpy as np
+ROWS = [(0.0, -np.pi/2, 0.412, 0.0), (0.0, np.pi/2, 0.154, 0.0), (0.0203, 0.0, 0.0, -np.pi/2),
+        (0.0, -np.pi/2, 0.0, 0.0), (0.0, np.pi/2, 0.0, 0.0), (0.0, 0.0, 0.263, 0.0)]
+
+def f(q, qd):
+    T, w, v, out = np.eye(4), np.zeros(3), np.zeros(3), []
+    for k, (a, al, d, th) in enumerate(ROWS):
+        slide = k == 2
+        th = th + (0 if slide else q[k])
+        d = d + (q[k] if slide else 0)
+        c, s, ca, sa = np.cos(th), np.sin(th), np.cos(al), np.sin(al)
+        z, last = T[:3, 2], T[:3, 3]
+        T = T @ np.array([[c, -s*ca, s*sa, a*c], [s, c*ca, -c*sa, a*s], [0, sa, ca, d], [0, 0, 0, 1]])
+        w = w + (0 if slide else qd[k])*z
+        v = v + np.cross(w, T[:3, 3] - last) + (qd[k]*z if slide else 0)
+    return np.array([v @ v])[0]
+"""
+
+
+@pytest.mark.parametrize(
+    ("robot", "quantity", "text", "right", "slip"),
+    [
+        ("stanford", "fk", DEGREES, "0.0203, 0.0, 0.0, -90*deg", "0.0203, 0.0, 0.0, 90*deg"),
+        ("stanford", "jacobian", KINDS, '("P", 0.0203', '("R", 0.0203'),
+        ("spatial3r", "mass_matrix", TENSORS, "xy=0.001, yz=0.0005", "xy=-0.001, yz=-0.0005"),
+        ("planar3r", "gradient_step", GRADIENT, "grad = -J.T", "grad = J.T"),
+        ("planar3r", "gradient_step", GRADIENT, "q - 0.1*grad", "q + 0.1*grad"),
+        ("unequal", "fivebar_turn", COUNTERPARTS, " - rod*dtwo**2*np.array([np.cos(two), np.sin(two)])", ""),
+        ("planar2r_rods", "kinetic_energy", MIXED, "0.5*v @ M @ v", "0.5*np.diag(M) @ v**2"),
+        ("ur5", "jacobian_tool", HALVES, "lower = R.T @ Jw", "lower = Jw"),
+        ("stanford", "tip_speed_squared", ONE_KIND, "(0 if slide else qd[k])*z", "qd[k]*z"),
+    ],
+    ids=["degrees", "kinds", "signs", "a gradient", "uphill", "counterparts", "mixed terms", "halves", "one kind"],
+)  # fmt: skip
+def test_what_is_lacking_is_told_by_its_like(robot, quantity, text, right, slip, tmp_path) -> None:
+    if slip:
+        told_in_its_line(robot, quantity, text, right, slip, tmp_path / "hand.py")
+    else:
+        found = kl.diagnose(robot, quantity, written(with_slips(text, [(right, slip)])))
+        assert len(found.causes) == 1 and right.strip(" -") in found.causes[0].sentence, found
