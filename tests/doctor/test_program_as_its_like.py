@@ -148,6 +148,56 @@ def f(q, qd):
     return np.array([v @ v])[0]
 """
 
+FLANGE = """
+import numpy as np
+A = [0, 0, 0, 0.0825, -0.0825, 0, 0.088]
+AL = [0, -np.pi/2, np.pi/2, np.pi/2, -np.pi/2, np.pi/2, np.pi/2]
+D = [0.333, 0, 0.316, 0, 0.384, 0, 0]
+
+def f(q):
+    T, frames = np.eye(4), []
+    for a, al, d, t in zip(A, AL, D, q):
+        c, s, ca, sa = np.cos(t), np.sin(t), np.cos(al), np.sin(al)
+        T = T @ np.array([[c, -s, 0, a], [s*ca, c*ca, -sa, -d*sa], [s*sa, c*sa, ca, d*ca], [0, 0, 0, 1]])
+        frames.append(T)
+    axes, points = np.array(frames)[:, :3, 2], np.array(frames)[:, :3, 3]
+    tip = points[-1] + 0.107*axes[-1]
+    return np.hstack([np.cross(axes, tip - points), axes]).T
+"""
+SYMBOLS = """
+import numpy as np
+def slopes(q):
+    h = 1.5*0.5*0.2*np.sin(q[1])
+    dM = np.zeros((2, 2, 2))
+    dM[0, 0, 1] = -2*h
+    dM[0, 1, 1] = dM[1, 0, 1] = -h
+    return dM
+
+def f(q):
+    dM = slopes(q)
+    return 0.5*(dM + dM.transpose(0, 2, 1) - dM.transpose(2, 0, 1))
+"""
+AT_REST = """
+import numpy as np
+L, M, IC = np.array([0.5, 0.4]), np.array([2.0, 1.5]), np.array([2.0*0.25/12, 1.5*0.16/12])
+
+def f(q, v, a):
+    t, w, al, acc, forces, levers = 0.0, 0.0, 0.0, np.array([0.0, 0.0]), [], []
+    for k in range(2):
+        t, w, al = t + q[k], w + v[k], al + a[k]
+        e, n = np.array([np.cos(t), np.sin(t)]), np.array([-np.sin(t), np.cos(t)])
+        forces.append(M[k]*(acc + L[k]/2*(al*n - w**2*e)))
+        levers.append((L[k]*e, IC[k]*al))
+        acc = acc + L[k]*(al*n - w**2*e)
+    force, moment, out = np.zeros(2), 0.0, np.zeros(2)
+    for k in (1, 0):
+        arm, own = levers[k]
+        moment += own + arm[0]*(force + forces[k]/2)[1] - arm[1]*(force + forces[k]/2)[0]
+        force = force + forces[k]
+        out[k] = moment
+    return out
+"""
+
 
 @pytest.mark.parametrize(
     ("robot", "quantity", "text", "right", "slip"),
@@ -160,9 +210,12 @@ def f(q, qd):
         ("unequal", "fivebar_turn", COUNTERPARTS, " - rod*dtwo**2*np.array([np.cos(two), np.sin(two)])", ""),
         ("planar2r_rods", "kinetic_energy", MIXED, "0.5*v @ M @ v", "0.5*np.diag(M) @ v**2"),
         ("ur5", "jacobian_tool", HALVES, "lower = R.T @ Jw", "lower = Jw"),
+        ("panda", "jacobian", FLANGE, "points[-1] + 0.107*axes[-1]", "points[-1]"),
+        ("planar2r_rods", "christoffel", SYMBOLS, "0.5*(dM", "1.0*(dM"),
+        ("planar2r_rods", "inverse_without_gravity", AT_REST, "np.array([0.0, 0.0])", "np.array([0.0, 9.81])"),
         ("stanford", "tip_speed_squared", ONE_KIND, "(0 if slide else qd[k])*z", "qd[k]*z"),
     ],
-    ids=["degrees", "kinds", "signs", "a gradient", "uphill", "counterparts", "mixed terms", "halves", "one kind"],
+    ids=["degrees", "kinds", "signs", "a gradient", "uphill", "counterparts", "mixed terms", "halves", "flange", "symbols", "at rest", "one kind"],
 )  # fmt: skip
 def test_what_is_lacking_is_told_by_its_like(robot, quantity, text, right, slip, tmp_path) -> None:
     if slip:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -59,6 +60,37 @@ def tool_behind_a_loop(
                 line = ast.Assign([ast.Name(name, ast.Store())], product)
                 edit = line_more(part, function, "body", block, at, line, _BEHIND)
                 yield replace(edit, of_the_arm=True)
+
+
+def tool_along_an_axis(
+    here: Here, observed: Observed, table: DHTable, stacks: Mapping[str, Any]
+) -> Iterator[ProgramEdit]:
+    """The tool's offset along the last axis: ``o[-1] + 0.1*z[-1]`` for ``o[-1]``.
+
+    Args:
+        here: an entry of an array of points.
+        observed: its shape.
+        table: with the tool.
+        stacks: shapes of the arrays that are known there.
+    """
+    node, point = here.node, np.asarray(table.tool, dtype=float)[:3, 3]
+    axes = np.flatnonzero(point)
+    if len(axes) != 1 or not isinstance(node, ast.Subscript) or observed.shape(node) != (3,):
+        return
+    if not isinstance(node.value, ast.Name) or not _is_last(node.slice, table.n):
+        return
+    length = typed(float(point[axes[0]]))
+    for name in sorted(stacks):
+        if name != node.value.id and stacks[name] == observed.shape(node.value):
+            axis = ast.Subscript(ast.Name(name, ast.Load()), copied(node.slice), ast.Load())
+            new = ast.BinOp(node, ast.Add(), ast.BinOp(length, ast.Mult(), axis))
+            yield replace(here.instead(new, "missing term", _BEHIND), of_the_arm=True)
+
+
+def _is_last(key: ast.expr, count: int) -> bool:
+    """Whether an index is that of the last of so many, or of one more."""
+    text = text_of(key)
+    return text in ("-1", str(count - 1), str(count))
 
 
 def _carried_on(loop: ast.For, observed: Observed) -> Iterator[str]:

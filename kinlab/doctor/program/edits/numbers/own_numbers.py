@@ -21,6 +21,7 @@ from kinlab.doctor.program.edits.numbers.left_out import (
     at_the_tool,
     has_the_tool,
     rotors_left_out,
+    tool_along_an_axis,
     tool_behind_a_loop,
 )
 from kinlab.doctor.program.observed import Observed
@@ -87,6 +88,8 @@ def of_own_numbers(
     for place in every:
         if not isinstance(place.value, float):
             continue
+        if may_be_gravity(abs(place.value)):  # what is asked for may be without it
+            yield place.edit(0.0, "number", _CONSTANT)
         for value, cost in _meant(place, kinds | {"gravity": [weight]}, summed, given):
             both = abs(float(place.value)), abs(value)
             other_end = any(_are(both, pair) or _are(both[::-1], pair) for pair in turned)
@@ -128,9 +131,15 @@ def of_own_numbers(
     offset = np.asarray(table.tool, dtype=float)[:3, 3].any()
     has_more = offset or any(link.armature for link in table.links)
     for part, tree in enumerate(trial.trees) if has_more else ():
+        held = (
+            (node.id, observed.shape(node)) for node in nodes(tree) if isinstance(node, ast.Name)
+        )
+        stacks = {name: shape for name, shape in held if shape is not None}
         for here in places(part, tree):
             yield from at_the_tool(here, table, given)
             yield from rotors_left_out(here, table)
+            if not has_the_tool(table, given):
+                yield from tool_along_an_axis(here, observed, table, stacks)
     whole = not np.array_equal(np.asarray(table.tool, dtype=float), np.eye(4))
     whole = whole and "np" in trial.space and not has_the_tool(table, [*given, *_held(trial)])
     for part, tree in enumerate(trial.trees) if whole else ():

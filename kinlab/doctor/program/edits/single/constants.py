@@ -34,6 +34,8 @@ _OF_A_BRANCH, _KEYS = 1.1, 2
 """Cost of something for nothing in a branch, and indices of the other one that are looked at."""
 _QUARTER, _IN_DEGREES = 15, 1.1
 """Angles in degrees are typed in multiples of it, and cost of such a one in radians."""
+_OF_ONE = 0.97
+"""Cost of a half for a factor of one that is typed."""
 _ANGLE_FOR_ONE = 1.05
 """Cost of the angle for a 1 in front of its sine: ``th - sin(th)``."""
 
@@ -184,6 +186,9 @@ def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
     if value == 0 and isinstance(here.parent, ast.Assign):
         for other in _unread_entries(here, scope):
             yield here.instead(other, "name", _OF_AN_ARGUMENT)
+    product = getattr(here.parent, "op", None)
+    if value == 1 and isinstance(value, float) and isinstance(product, ast.Mult):
+        yield here.within(here.node, "value", 0.5, "factor", _OF_ONE)  # 1.0*x says nothing
     if value == 1 and (angle := _angle_beside(here)) is not None:
         yield here.instead(angle, "name", _ANGLE_FOR_ONE)
     if value in _ROOTS and scope.has_numpy and isinstance(here.parent, ast.BinOp):
