@@ -35,7 +35,7 @@ from kinlab.formulas.handed.equations import solved
 from kinlab.formulas.handed.rates import MOVING
 from kinlab.formulas.handed.reading import as_formula
 from kinlab.formulas.language.clauses import Claim, Holds
-from kinlab.formulas.language.derivations import conclusion, steps_beside
+from kinlab.formulas.language.derivations import conclusion, numbers_beside, steps_beside
 from kinlab.formulas.language.prose import Doubt, doubtful, left_over
 from kinlab.formulas.language.words import refuse_meanings_of_steps
 from kinlab.formulas.signs.latex import LAMBDA
@@ -285,6 +285,10 @@ def _formula_file(
     left = {key: left_over(*doubts[key], names) for key in doubts.keys() & file.formulas.keys()}
     unread = {key: words for key, words in left.items() if words}
     given = {_bare_name(x) for x in opened.union(*map(_used, (file, *others)))}
+    for key in left if holds is not None else ():
+        for name, number in numbers_beside(doubts[key][0]):
+            if holds is not None and name not in file.symbols:  # no formula uses it
+                _refuse_untrue(name, number, holds, f"{place}: {key}")
     for key in left.keys() - ends.keys():
         steps = [*dict.fromkeys(steps_beside(doubts[key][0], key))]
         steps = [one for one in steps if _bare_name(one) not in given]

@@ -549,7 +549,6 @@ def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
     lines.sort(key=lambda line: (line in gives, "=" not in line))
     if lines and lines[-1] not in gives and "=" in lines[-1]:
         lines = sorted(lines, key=lambda line: not explains_another(line, lines))
-    # what gives the entry before is how the writer came to it: L = K - P
     own = [_ends(line) for line in lines[:-1] if line not in gives]
     if not lines[:-1] or not all(map(_may_be_taken, lines[:-1])):
         return {}, text
@@ -562,7 +561,25 @@ def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
             return {}, text
     dollars = "$" if is_latex(text) else ""
     formulas = {own_name(name): f"{dollars}{bare(right)}{dollars}" for name, _sign, right in own}
-    return formulas, f"{dollars}{lines[-1]}{dollars}"
+    # what gives the entry before is how the writer came to it; L = K - P says what it is
+    before = [side for line in lines[:-1] if line in gives for side in line.split("=")[1:]]
+    steps = [
+        side
+        for side in before
+        if left and not says_what_it_is(side) and not _is_of_parts(side, formulas)
+    ]
+    formula = "=".join([left, *steps, lines[-1].partition("=")[2]]) if steps else lines[-1]
+    return formulas, f"{dollars}{formula}{dollars}"
+
+
+_OF_PARTS = re.compile(r"([A-Za-z])_?\{?\d\}?(?:\s*\+\s*\1_?\{?\d\}?)+")
+"""A sum of one letter's parts: ``T1 + T2``."""
+
+
+def _is_of_parts(step: str, given: Container[str]) -> bool:
+    """Whether a step says of what parts something is, which are not all explained."""
+    plain = step.strip(" .,;$&")
+    return bool(_OF_PARTS.fullmatch(plain)) and not _rests_on(plain, given)
 
 
 def _may_be_taken(line: str) -> bool:

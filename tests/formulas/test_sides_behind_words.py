@@ -167,3 +167,45 @@ def test_of_a_matrix_that_is_given_twice_each_is_judged():
     wrong = right.replace("2*l1*l2*c2", "l1*l2*c2")
     found = kl.diagnose("planar2r", "mass_matrix", f"M = {right} (symmetric) = {wrong}")
     assert not found.agrees and "2*l1*l2*c2" in found.causes[0].sentence, found
+
+
+@pytest.mark.parametrize(
+    "between",
+    ["\n", "; ", "\nso ", ", then ", ":\nlast step\n", "\n由此得\n"],
+)
+def test_an_earlier_line_of_the_entry_is_judged(between):
+    """``M33 = (wrong)`` and ``M33 = (right)`` below it: it agreed without a word."""
+    own, last = "M33 = m3*l3^2/4 + m3*l3^2/12", "M33 = m3*l3^2/3"
+    assert kl.diagnose("planar3r", "M33", f"{own}{between}{last}").agrees
+    wrong = own.replace("l3^2/12", "l3^3/12")
+    found = kl.diagnose("planar3r", "M33", f"{wrong}{between}{last}")
+    assert not found.agrees, found
+    assert "l3^3 should be l3^2" in found.causes[0].sentence
+    assert not kl.diagnose("planar3r", "M33", f"{own}{between}{last}*l3").agrees
+
+
+def test_what_an_earlier_line_is_made_of_is_no_step_where_it_is_not_explained():
+    text = "T = T1 + T2\nT = m1*l1^2*qd1^2/6 + m2*(l1^2*qd1^2 + l2^2*(qd1+qd2)^2/3 + l1*l2*cos(q2)*qd1*(qd1+qd2))/2"
+    assert kl.diagnose("planar2r_rods", "T", text).agrees
+    assert not kl.diagnose("planar2r_rods", "T", text.replace("/6", "/3")).agrees
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "with l1 = {} m and l2 = 0.275 m we get x = 0.325 cos(q1) + 0.275 cos(q1+q2)",
+        "手册里 l1 = {} m, l2 = 0.275 m，所以 x = 0.325 cos(q1) + 0.275 cos(q1+q2)",
+        "l1 = {}, x = 0.325 cos(q1) + 0.275 cos(q1+q2)",
+    ],
+)
+def test_a_number_of_the_arm_beside_a_formula_of_numbers_is_held_against_it(text):
+    assert kl.diagnose("scara", "x", text.format("0.325")).agrees
+    with pytest.raises(ExpressionError, match="l1 = 3.325.*is not so of this robot"):
+        kl.diagnose("scara", "x", text.format("3.325"))
+
+
+@pytest.mark.parametrize("name", ["v2x", "xc2", "h2a"])
+def test_what_is_given_for_a_name_with_letters_behind_its_number_is_told(name):
+    found = kl.diagnose("planar2r", "M12", f"{name} = l1*s1*qd1\nM12 = m2*l2^2 + m2*l1*l2*c2")
+    assert found.agrees
+    assert found.remarks == (f"not judged: what is given for {name}",)

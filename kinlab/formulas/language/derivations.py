@@ -36,7 +36,7 @@ _LINES = re.compile(
 """Where one step ends and another begins; words in LaTeX."""
 _GAPS = re.compile(r"\\[,;:! ]")
 _LETTER = r"(?:\\?[A-Za-z]{1,16}|[α-ωΑ-Ω𝜃𝜏])"
-_INDEX = r"(?:_?\d{1,3}(?:,\d)?|[₀-₉]{1,3}|_?\{[^{}=\n]{1,12}\}|_[A-Za-z]\d?)"
+_INDEX = r"(?:_?\d{1,3}(?:,\d)?[a-z]{0,3}|[₀-₉]{1,3}|_?\{[^{}=\n]{1,12}\}|_[A-Za-z]\d?)"
 _NAMED = re.compile(
     rf"(?<![\w\\}}\])])(?P<name>(?:\\d?dot\s*\{{?\s*)?{_LETTER}[̇̈]?\}}?{_INDEX}?"
     r"(?:\[[\d,: ]{1,9}\]|\(\s?\d\s?,\s?\d\s?\))?(?:\^\{?2\}?|²|\*\*2)?)"
@@ -130,6 +130,25 @@ def steps_beside(text: str, entry: str) -> list[str]:
             and not (len(one.name) > 1 and is_linking(one.name))
         ]
     return []
+
+
+def numbers_beside(text: str) -> list[tuple[str, str]]:
+    """The names, as typed, to which equations of a text give a number; lengths in metres, masses in
+    kilograms, or without a unit.
+
+    Args:
+        text: as typed.
+    """
+    if text.count("=") < 2 or len(text) > _LONGEST or _PROGRAM.search(text):
+        return []
+    with suppress(_UnsureError):
+        told = ((one.name, _A_NUMBER.fullmatch(one.right)) for one in _all(text))
+        return [(name, found["number"]) for name, found in told if found is not None]
+    return []
+
+
+_A_NUMBER = re.compile(r"(?P<number>\d+(?:\.\d+)?)\s?(?:m|kg)?[.)]?")
+"""A number, and its unit."""
 
 
 def _all(text: str) -> list[_Equation]:

@@ -296,7 +296,7 @@ def _of_sign(edit: ProgramEdit, observed: Observed, robot: Any) -> float:
 
 def _is_turned(robot: Any, value: float) -> bool:
     """Whether a number is not the robot's, and its opposite is."""
-    return is_free(value) and is_own(robot, -value) and not is_own(robot, value)
+    return is_own(robot, -value) and not is_own(robot, value) and is_free(value)
 
 
 def _moves_one_of(rows: list[Array], edit: ProgramEdit) -> bool:
