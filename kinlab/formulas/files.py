@@ -285,9 +285,10 @@ def _formula_file(
     left = {key: left_over(*doubts[key], names) for key in doubts.keys() & file.formulas.keys()}
     unread = {key: words for key, words in left.items() if words}
     given = {_bare_name(x) for x in opened.union(*map(_used, (file, *others)))}
+    used_up = {*map(_bare_name, file.symbols)}
     for key in left if holds is not None else ():
         for name, number in numbers_beside(doubts[key][0]):
-            if holds is not None and name not in file.symbols:  # no formula uses it
+            if holds is not None and _bare_name(name) not in used_up:  # no formula has it
                 _refuse_untrue(name, number, holds, f"{place}: {key}")
     for key in left.keys() - ends.keys():
         steps = [*dict.fromkeys(steps_beside(doubts[key][0], key))]
