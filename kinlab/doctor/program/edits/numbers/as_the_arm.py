@@ -113,7 +113,9 @@ def _of_tensors(trial: Trial, observed: Observed, table: DHTable) -> Iterator[Pr
             elif len(off) > 1 and all(i != k and values[i, k] == -tensor[i, k] for i, k in off):
                 every = [cell for row in cells for cell in row]  # products with the other sign
                 some = [(cells[i][k], float(tensor[i, k])) for i, k in off]
-                yield replace(_row(some, every, False), kind="products' signs")
+                held = every[0].place
+                edit = replace(_row(some, every, False), kind="products' signs")
+                yield edit if held is None else replace(edit, place=held.place[:-2])
 
 
 def with_other_signs(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Any
 
 from kinlab.doctor.bytecode.syntax import nodes
@@ -60,7 +60,8 @@ def of_kinds_held(trial: Trial) -> Iterator[ProgramEdit]:
         for k, row in enumerate(rows):
             if isinstance(row, tuple | list):
                 for at, word in enumerate(row):
-                    column = {x[at] for x in rows if isinstance(x, type(row)) and len(x) > at}
+                    alike = (x[at] for x in rows if isinstance(x, type(row)) and len(x) > at)
+                    column = {one for one in alike if isinstance(one, str)}
                     for other in _others(word, compared, column):
                         parts = [*row[:at], other, *row[at + 1 :]]
                         yield _held(name, (k, at), rows, made_like(row, parts), (word, other))
@@ -73,11 +74,11 @@ def _held(
     return ProgramEdit(DATA, (change,), "condition", _COST, name, place, exchanged=told)
 
 
-def _others(word: Any, compared: frozenset[str], column: Sequence[Any] | set[Any]) -> list[str]:
+def _others(word: Any, compared: frozenset[str], column: set[str]) -> list[str]:
     """The kinds that it may be instead."""
     if not isinstance(word, str) or not word.isalpha():
         return []
-    column = {one for one in column if isinstance(one, str) and one.isalpha()}
+    column = {one for one in column if one.isalpha()}
     known = compared | column
     if not compared & column and not (column == {word} and len(compared) == 1):
         return []
