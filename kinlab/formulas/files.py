@@ -286,9 +286,9 @@ def _formula_file(
     unread = {key: words for key, words in left.items() if words}
     given = {_bare_name(x) for x in opened.union(*map(_used, (file, *others)))}
     used_up = {*map(_bare_name, file.symbols)}
-    for key in left if holds is not None else ():
+    for key in left:
         for name, number in numbers_beside(doubts[key][0]):
-            if holds is not None and _bare_name(name) not in used_up:  # no formula has it
+            if holds and _bare_name(name) not in used_up:  # no formula has it
                 _refuse_untrue(name, number, holds, f"{place}: {key}")
     for key in left.keys() - ends.keys():
         steps = [*dict.fromkeys(steps_beside(doubts[key][0], key))]

@@ -82,12 +82,7 @@ def conclusion(text: str, entry: str, last: bool = False) -> str:
     Returns:
         Empty where there is no other equation, or none of the entry.
     """
-    if text.count("=") < 2 or len(text) > _LONGEST or _PROGRAM.search(text):
-        return ""
-    try:
-        found = _all(text)
-    except _UnsureError:
-        return ""
+    found = _told(text)
     own = [one for one in found if begins_with(f"{one.name} = 0", entry)]
     own = own or [one for one in found if _may_be(one.name) and is_name_of(one.name, entry)]
     own = own[-1:] if last else own
@@ -117,19 +112,14 @@ def steps_beside(text: str, entry: str) -> list[str]:
         text: as typed.
         entry: what it is asked for.
     """
-    if text.count("=") < 2 or len(text) > _LONGEST or _PROGRAM.search(text):
-        return []
-    with suppress(_UnsureError):
-        found = _all(text)
-        return [
-            one.name
-            for one in found
-            if _OF_LETTERS.search(one.right)
-            and not is_name_of(one.name, entry)
-            and not is_sister(one.name, entry)
-            and not (len(one.name) > 1 and is_linking(one.name))
-        ]
-    return []
+    return [
+        one.name
+        for one in _told(text)
+        if _OF_LETTERS.search(one.right)
+        and not is_name_of(one.name, entry)
+        and not is_sister(one.name, entry)
+        and not (len(one.name) > 1 and is_linking(one.name))
+    ]
 
 
 def numbers_beside(text: str) -> list[tuple[str, str]]:
@@ -139,16 +129,23 @@ def numbers_beside(text: str) -> list[tuple[str, str]]:
     Args:
         text: as typed.
     """
-    if text.count("=") < 2 or len(text) > _LONGEST or _PROGRAM.search(text):
-        return []
-    with suppress(_UnsureError):
-        told = ((one.name, _A_NUMBER.fullmatch(one.right)) for one in _all(text))
-        return [(name, found["number"]) for name, found in told if found is not None]
-    return []
+    told = ((one.name, _A_NUMBER.fullmatch(one.right)) for one in _told(text))
+    return [(name, found["number"]) for name, found in told if found is not None]
 
 
 _A_NUMBER = re.compile(r"(?P<number>\d+(?:\.\d+)?)\s?(?:m|kg)?[.)]?")
 """A number, and its unit."""
+
+
+def _told(text: str) -> list[_Equation]:
+    """All equations of a text with several; none where it is a program's, or where one ends is not
+    sure.
+    """
+    if text.count("=") < 2 or len(text) > _LONGEST or _PROGRAM.search(text):
+        return []
+    with suppress(_UnsureError):
+        return _all(text)
+    return []
 
 
 def _all(text: str) -> list[_Equation]:

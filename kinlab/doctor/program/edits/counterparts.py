@@ -10,9 +10,10 @@ import ast
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
-from kinlab.doctor.bytecode.syntax import copied, nodes, text_of
+from kinlab.doctor.bytecode.syntax import names, nodes, text_of
 from kinlab.doctor.derivations.words import minus
-from kinlab.doctor.program.edits.scope.forms import summands
+from kinlab.doctor.program.edits.exchanges import Renamed
+from kinlab.doctor.program.edits.scope.forms import named, summands
 from kinlab.doctor.program.places import ProgramEdit
 from kinlab.doctor.program.trial import FieldChange
 
@@ -59,14 +60,8 @@ def _with(value: ast.expr, term: ast.expr, other: ast.expr) -> ast.expr:
 
 def _renamed(term: ast.expr, way: Names) -> ast.expr | None:
     """A term with the counterparts of its names; None where too few have one."""
-    told = {node.id for node in nodes(term) if isinstance(node, ast.Name)}
-    if len(told & way.keys()) < _LEAST:
-        return None
-    other = copied(term)
-    for node in nodes(other):
-        if isinstance(node, ast.Name):
-            node.id = way.get(node.id, node.id)
-    return other
+    others: dict[str, ast.expr] = {x: named(way[x]) for x in names(term) if x in way}
+    return Renamed(others).of(term) if len(others) >= _LEAST else None
 
 
 def _ways(tree: ast.AST) -> Iterator[Names]:

@@ -157,7 +157,7 @@ def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[Pro
         found += of_blocks(part, tree, scope, observed)
         found += of_counterparts(part, tree)
     found += of_data(trial)
-    found += of_kinds_held(trial)
+    found += of_kinds_held(trial, compared)
     # of equal ones the later line: what is set there is used more rarely
     return sorted(found, key=lambda edit: (edit.cost, edit.part, -_line(edit)))
 

@@ -64,8 +64,9 @@ def of_guards(
     op = getattr(here.parent, "op", None)
     if shape == _VECTOR and isinstance(op, ast.MatMult) and isinstance(node, ast.Name):
         yield from _of_a_slide(here, scope, tests)
-    along = _is_rate_along_an_axis(here, observed)
-    if not (isinstance(op, ast.Add | ast.Sub) or along) or shape is None:
+    if shape is None:
+        return
+    if not isinstance(op, ast.Add | ast.Sub) and not _is_rate_along_an_axis(here, observed):
         return
     if not isinstance(node, ast.Name | ast.Subscript | ast.Attribute | ast.Call):
         return
@@ -128,7 +129,7 @@ def _added(line: ast.stmt) -> Iterator[ast.expr]:
 
 def _tests_here(here: Here, scope: Scope, tests: dict[str, ast.expr]) -> list[ast.expr]:
     """Of the conditions by which numbers are chosen those that may stand there, and others."""
-    block, at = block_of(here.above)
+    block, at = block_of(here.above) if tests else ([], 0)
     lines = [line for line in block[:at] if isinstance(line, ast.Assign)]
     above = (name for line in lines for to in line.targets for name in names(to))
     inside = {*scope.shapes, *scope.counting, *above}

@@ -306,11 +306,13 @@ class Grounds:
         """Whether an edit turns round all that is called a gradient, and is taken away later:
         ``grad = -J.T @ (target - x)``; or takes away one that was added.
         """
+        if edit.kind != "sign":
+            return False
         change = edit.changes[0]
         if isinstance(change.new, ast.Sub) and isinstance(change.holder, ast.BinOp):
-            return edit.kind == "sign" and any(_gradients(change.holder.right))
+            return any(_gradients(change.holder.right))
         whole = isinstance(change.holder, ast.Assign) and change.field == "value"
-        targets = change.holder.targets if edit.kind == "sign" and whole else []
+        targets = change.holder.targets if whole else []
         return any(isinstance(one, ast.Name) and one.id in self.downhill for one in targets)
 
     def _takes_a_mass_away(self, edit: ProgramEdit) -> bool:

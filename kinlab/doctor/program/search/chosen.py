@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -79,7 +79,7 @@ def chosen(
     scopes = [Scope(trial, observed, k) for k in range(len(trial.trees))]
     every = edits(trial, observed, scopes)
     every += of_table(trial, observed, robot)
-    every += with_other_signs(trial, observed, partial(_is_turned, robot))
+    every += with_other_signs(trial, observed, cache(partial(_is_turned, robot)))
     every += of_centres(trial, observed, robot)
     every += of_own_numbers(trial, observed, robot, *map(asked.watched_of, ("q", "a")))
     every += missing_products(trial, observed, scopes, dimensions)

@@ -50,9 +50,8 @@ def _beside(here: Here) -> set[str]:
     }
 
 
-def of_kinds_held(trial: Trial) -> Iterator[ProgramEdit]:
+def of_kinds_held(trial: Trial, compared: frozenset[str]) -> Iterator[ProgramEdit]:
     """Another kind for one of those in a table of the data."""
-    compared = words_of_kinds(trial)
     for name in trial.program.data if compared else ():
         rows = trial.space[name]
         if not isinstance(rows, list):

@@ -129,6 +129,7 @@ def of_own_numbers(
     arm = {abs(float(x)) for x in (*(x for k in table.links for x in (k.a, k.d)), *chain(*ends))}
     unnamed = [x for x in sorted(arm) if x and not among(x, given)]
     offset = np.asarray(table.tool, dtype=float)[:3, 3].any()
+    has_tool = has_the_tool(table, given)
     has_more = offset or any(link.armature for link in table.links)
     for part, tree in enumerate(trial.trees) if has_more else ():
         held = (
@@ -138,7 +139,7 @@ def of_own_numbers(
         for here in places(part, tree):
             yield from at_the_tool(here, table, given)
             yield from rotors_left_out(here, table)
-            if not has_the_tool(table, given):
+            if not has_tool:
                 yield from tool_along_an_axis(here, observed, table, stacks)
     whole = not np.array_equal(np.asarray(table.tool, dtype=float), np.eye(4))
     whole = whole and "np" in trial.space and not has_the_tool(table, [*given, *_held(trial)])

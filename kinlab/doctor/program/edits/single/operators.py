@@ -185,24 +185,23 @@ def _with_mixed_terms(product: ast.BinOp) -> ast.expr | None:
         return None
     first, others = chains.chain(product.left, (ast.Mult,))
     members = [first, *(member for _op, member in others)]
-    square = [
-        k
-        for k, x in enumerate(members)
-        if isinstance(x, ast.Call) and called(x) in ("diag", "diagonal")
-    ]
-    if not chains.is_two(squared.right) or len(square) != 1:
+    diagonals = [(k, of) for k, x in enumerate(members) if (of := _of_diagonal(x)) is not None]
+    if not chains.is_two(squared.right) or len(diagonals) != 1:
         return None
-    call, rate = members[square[0]], squared.left
-    assert isinstance(call, ast.Call)
-    owner = getattr(call.func, "value", None)
-    matrix = owner if called(call) == "diagonal" and not call.args else [*call.args, None][0]
-    if matrix is None:
-        return None
-    dotted = isinstance(product.op, ast.MatMult)
-    form: ast.expr = ast.BinOp(rate, ast.MatMult(), matrix)
-    members[square[0]] = form if dotted else ast.BinOp(matrix, ast.MatMult(), rate)
+    ((at, matrix),), rate = diagonals, squared.left
+    sides = (rate, matrix) if isinstance(product.op, ast.MatMult) else (matrix, rate)
+    members[at] = ast.BinOp(sides[0], ast.MatMult(), sides[1])
     scaled = chains.joined(members[0], [(ast.Mult(), one) for one in members[1:]])
     return ast.BinOp(scaled, product.op, rate)
+
+
+def _of_diagonal(node: ast.expr) -> ast.expr | None:
+    """The matrix of ``diag(M)`` and ``M.diagonal()``; None of anything else."""
+    if not isinstance(node, ast.Call) or called(node) not in ("diag", "diagonal"):
+        return None
+    if node.args:
+        return node.args[0]
+    return node.func.value if isinstance(node.func, ast.Attribute) else None
 
 
 def _is_all(here: Here) -> bool:
