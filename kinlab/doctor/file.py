@@ -123,7 +123,7 @@ def examine_formulas(
             where the last one is wrong, and nobody knows why.
     """
     file = as_judged(file, robot)
-    parts = [_examined(file, robot, samples, seed)]
+    parts, unheld = [_examined(file, robot, samples, seed)], list[str]()
     unknown = file.broken.removeprefix(f"{file.path}: ")
     right = all(one.agrees for one in parts[0])
     if unknown and not all(one.agrees or one.causes for one in parts[0]):
@@ -134,7 +134,12 @@ def examine_formulas(
         except ExpressionError as problem:  # T = T_1 + T_2 = ...
             unknown = unknown or str(problem).removeprefix(f"{file.path}: ")
             continue
-        if right and _may_mean_another(other, file) and not all(one.agrees for one in part):
+        same = all(one.agrees for one in part)
+        if other.apart and same and not right:
+            return [_given_twice(one) for one in parts[0]]
+        if other.line and right and not same:
+            unheld += [shown_formula(other.line)]
+        elif right and _may_mean_another(other, file) and not same:
             unknown = unknown or _("its names may be of another point, or another link")
         else:
             parts.append(part)
@@ -143,8 +148,35 @@ def examine_formulas(
     if unknown:
         said = _("a part of the chain of equalities was not judged ({why})").format(why=unknown)
         told = [replace(one, remarks=(*one.remarks, said)) for one in told]
+    for line in dict.fromkeys(reversed(unheld)):
+        said = _("another line, {line!r}, was not judged: it may be of a part")
+        told = [replace(one, remarks=(*one.remarks, said.format(line=line))) for one in told]
     told = [_with_remarks(one, file.remarks) for one in told] if file.remarks else told
     return [_judged_with(one, file) for one in told] if file.unread else told
+
+
+_SHOWN = 60
+"""Signs of a formula in a remark."""
+
+
+def shown_formula(text: str) -> str:
+    """A formula in a remark: its beginning.
+
+    Args:
+        text: as typed.
+    """
+    return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."
+
+
+def _given_twice(found: Diagnosis) -> Diagnosis:
+    """A diagnosis of a formula that is wrong where a line before it, with other words, is right."""
+    if found.agrees:
+        return found
+    said = _(
+        "it is given in several lines that are not the same, and the words beside them may say of "
+        "what each of them is; leave one"
+    )
+    return replace(found, causes=(), partial=(), proved=(), form="words", remarks=(said,))
 
 
 _UNCONDITIONED = {"sign", "sin/cos", "index", "power", "argument"}

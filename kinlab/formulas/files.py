@@ -36,7 +36,13 @@ from kinlab.formulas.handed.rates import MOVING
 from kinlab.formulas.handed.reading import as_formula
 from kinlab.formulas.language.clauses import Claim, Holds
 from kinlab.formulas.language.derivations import conclusion, numbers_beside, steps_beside
-from kinlab.formulas.language.prose import Doubt, doubtful, left_over
+from kinlab.formulas.language.prose import (
+    Doubt,
+    behind_the_first,
+    doubtful,
+    left_over,
+    say_of_what,
+)
 from kinlab.formulas.language.words import refuse_meanings_of_steps
 from kinlab.formulas.signs.latex import LAMBDA
 from kinlab.formulas.signs.letters import WIDE
@@ -55,6 +61,7 @@ from kinlab.host.language import N_, _
 _FORMULAS = 200
 _SHOWN = 60
 """Signs of a formula in a remark."""
+_EQUATION_BEHIND = re.compile(r"; (?=[^;=\]]{1,40} = )")
 PartsOf = Callable[[str], grids.Grid | None]
 """The entries of a name that is of several, row by row; None of a name that is of one or of all."""
 
@@ -76,6 +83,8 @@ class FormulaFile:
         symbols_typed: symbols as they were typed, where that is a text.
         others: the file with another part of a chain of equalities for an entry's formula.
         broken: what a part of a chain of equalities could not be read for; empty where all were.
+        line: of one of the others, an earlier equation of which words may say that it is of a part.
+        apart: whether words behind it may say that the last one is.
         remarks: what is to be said of how an entry was read.
         unread: words beside an entry's formula that may change what it claims.
         parts: rows, columns and blocks of a quantity that were given, with their entries.
@@ -93,6 +102,8 @@ class FormulaFile:
     numbers: Mapping[str, str] = field(default_factory=dict)
     others: tuple[FormulaFile, ...] = ()
     broken: str = ""
+    line: str = ""
+    apart: bool = False
     remarks: Mapping[str, str] = field(default_factory=dict)
     unread: Mapping[str, Doubt] = field(default_factory=dict)
     symbols_typed: Mapping[str, str] = field(default_factory=dict)
@@ -211,7 +222,9 @@ def _formula_file(
         if key in ends:
             told = doubtful(text, key)
             said = _("of the derivation {formula!r} is judged, and no other step")
-            remarks[key] = said.format(formula=plain.strip("$")[:_SHOWN])
+            end = plain.strip("$")
+            end = _EQUATION_BEHIND.split(end)[-1] if say_of_what(text) else end
+            remarks[key] = said.format(formula=end[:_SHOWN])
         doubts[key] = text, told
         entries[key] = typed.as_column(entries[key], key)
         parts = {} if key in whole else typed.several(entries[key], key)
@@ -221,19 +234,22 @@ def _formula_file(
             whole |= {one: grid for one in parts if parts_of and (grid := parts_of(one))}
             doubts |= dict.fromkeys(parts, doubts[key])
     explained, opened = set[str](), set[str]()
+    before: dict[str, list[str]] = {}
     for key, value in entries.items():
         own, entries[key] = typed.explained(_text(value, f"{place}: {key}"), key)
         explained |= own.keys()
+        earlier = typed.lines_before(value, key, own) if entries[key] != value else []
         if steps := typed.unjudged_steps(value, own):
             said = _("of what is given for {name} the last step is taken; another was not judged")
             taken = said.format(name=", ".join(steps))
             remarks[key] = "; ".join(filter(None, (remarks.get(key), taken)))
         put_in = {*own}
+        before[key] = [with_matrices(own, one, f"{place}: {key}")[1] for one in earlier]
         own, entries[key] = with_matrices(own, entries[key], f"{place}: {key}")
         opened |= put_in - own.keys()
-        entries[key] = _of_gravity(entries[key], key)
-        if last is not None and last.number == 1:
-            entries[key] = _of_one_joint(entries[key], key)
+        alone = last is not None and last.number == 1
+        before[key] = [_by_its_entry(one, key, alone) for one in before[key]]
+        entries[key] = _by_its_entry(entries[key], key, alone)
         left = entries[key].partition("=")[0]
         other = [side for side in entries[key].split("=")[:-1] if is_another_slope(side, key)]
         of_angle = key.startswith("planar_pose[") and typed.is_angle(left)  # it has its cosine
@@ -247,7 +263,7 @@ def _formula_file(
                 "tool beyond it"
             ).format(number=last.number)
             remarks[key] = "; ".join(filter(None, (remarks.get(key), said)))
-        used = typed.joined_up(" ".join([*own.values(), entries[key]]))
+        used = typed.joined_up(" ".join([*own.values(), *before[key], entries[key]]))
         for name, formula in own.items():
             unused = name not in used or name[0] == "L"
             if unused and not _readable(formula):
@@ -261,12 +277,16 @@ def _formula_file(
                 raise refused(f"{place}: {key}", said, name=name)
     entries = {key: solved(value, key, f"{place}: {key}") for key, value in entries.items()}
     chains = {key: typed.readings(value, key, explained) for key, value in entries.items()}
+    sides = [(key, part, "", False) for key, parts in chains.items() for part in parts[1:]]
+    for key, lines in before.items():
+        lines = [solved(line, key, f"{place}: {key}") for line in lines]
+        sides += _sides_before(lines, key, doubts[key][0], explained)
     entries = {key: parts[0] for key, parts in chains.items()}
     read = partial(_read, place, robot, symbols, writing, whole)
     file, others, broken = read(entries), list[FormulaFile](), ""
-    for key, part in ((key, part) for key, parts in chains.items() for part in parts[1:]):
+    for key, part, shown, behind in sides:
         try:
-            others.append(read({**entries, key: part}))
+            others.append(replace(read({**entries, key: part}), line=shown, apart=behind))
         except ExpressionError as problem:  # Im(l1*e^(i*q1) + ...) = ...
             broken = broken or str(problem)
     remarks = {key: remark for key, remark in remarks.items() if remark}
@@ -304,6 +324,24 @@ def _formula_file(
             remarks[key] = "; ".join(filter(None, (remarks.get(key), said)))
     file = replace(file, others=tuple(others), broken=broken)
     return replace(file, remarks=remarks, unread=unread, matrices=matrices)
+
+
+def _by_its_entry(text: str, key: str, alone: bool) -> str:
+    """A formula by its entry's name, where it has another: as gravity's torque, of one joint."""
+    text = _of_gravity(text, key)
+    return _of_one_joint(text, key) if alone else text
+
+
+def _sides_before(
+    lines: list[str], key: str, text: str, explained: set[str]
+) -> Iterator[tuple[str, str, str, bool]]:
+    """The entry and a side of each of its earlier lines, the last one first; that line where words
+    may say of what it is; and whether words behind it may say of what the last line is.
+    """
+    of_a_part, behind = say_of_what(text), say_of_what(behind_the_first(text, key))
+    for line in reversed(lines):
+        for part in typed.readings(line, key, explained):
+            yield key, part, line.strip("$") if of_a_part else "", behind
 
 
 _STATIC = re.compile(r"(?:tau|u|Q)g?(\d?)")

@@ -482,6 +482,9 @@ def sides(text: str, place: str = "expression") -> tuple[str, str]:
     typeset = is_latex(text)
     text = bare(text)
     parts = re.sub(r"&?\s*:?=\s*(?:\{\s*\})?\s*&?", "=", text).split("=")
+    if len(parts) == 2 and _ADDED_TO.search(parts[0]):
+        said = N_("{sign} adds to what is not there; write the whole formula")
+        raise refused(place, said, sign=f"{parts[0].rstrip()[-1]}=")
     if len(parts) > 2 or any(p.rstrip()[-1:] in ("<", ">", "!") for p in parts[:-1]):
         raise refused(
             place,
@@ -500,6 +503,7 @@ def sides(text: str, place: str = "expression") -> tuple[str, str]:
     return left, f"${right}$" if typeset else right
 
 
+_ADDED_TO = re.compile(r"[\w)\]}]\s*[-+*/]\s*$")
 _NAMED_NEXT = r"(?=(?:\\d?dot\s+)?[\\\w{}]{1,40}(?:\(q\)|\^\{?2\}?|\*\*2)?\s*&?\s*:?=)"
 _AND = r"(?:and|和|且)(?=\s)"
 _SPACES = r"\s|~|\\[,;:! ]|\\q?quad(?![A-Za-z])"
@@ -539,6 +543,24 @@ def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
         The writer's names with their formulas, as typed; and the formula itself: the one with the
         entry's name, the one without a name, the one in front of ``where``, or the last one.
     """
+    lines, gives = _in_order(text, entry)
+    own = [_ends(line) for line in lines[:-1] if line not in gives]
+    if not lines[:-1] or not all(map(_may_be_taken, lines[:-1])):
+        return {}, text
+    left = lines[-1].partition("=")[0] if "=" in lines[-1] else ""
+    if not all(_is_own_name(name.strip("& ")) for name, *_rest in own):
+        return {}, text
+    if entry and left:
+        named = entry_name(left, writing=hand([text]))
+        if not of_one_name(named, entry_name(entry)):
+            return {}, text
+    dollars = "$" if is_latex(text) else ""
+    formulas = {own_name(name): f"{dollars}{bare(right)}{dollars}" for name, _sign, right in own}
+    return formulas, f"{dollars}{lines[-1]}{dollars}"
+
+
+def _in_order(text: str, entry: str) -> tuple[list[str], set[str]]:
+    """The equations of a text, the one that is meant last; and those that give the entry."""
     lines, writing = _equations(text), hand([text])
     gives = {
         line
@@ -549,27 +571,28 @@ def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
     lines.sort(key=lambda line: (line in gives, "=" not in line))
     if lines and lines[-1] not in gives and "=" in lines[-1]:
         lines = sorted(lines, key=lambda line: not explains_another(line, lines))
-    own = [_ends(line) for line in lines[:-1] if line not in gives]
-    if not lines[:-1] or not all(map(_may_be_taken, lines[:-1])):
-        return {}, text
-    left = lines[-1].partition("=")[0] if "=" in lines[-1] else ""
-    if not all(_is_own_name(name.strip("& ")) for name, *_rest in own):
-        return {}, text
-    if entry and left:
-        named = entry_name(left, writing=writing)
-        if not of_one_name(named, entry_name(entry)):
-            return {}, text
-    dollars = "$" if is_latex(text) else ""
-    formulas = {own_name(name): f"{dollars}{bare(right)}{dollars}" for name, _sign, right in own}
-    # what gives the entry before is how the writer came to it; L = K - P says what it is
-    before = [side for line in lines[:-1] if line in gives for side in line.split("=")[1:]]
-    steps = [
-        side
-        for side in before
-        if left and not says_what_it_is(side) and not _is_of_parts(side, formulas)
+    return lines, gives
+
+
+def lines_before(text: str, entry: str, given: Container[str]) -> list[str]:
+    """The equations that give the entry in front of the one that :func:`explained` takes.
+
+    They are how the writer came to it; not what says of what it is made, as L = K - P does.
+
+    Args:
+        text: as typed.
+        entry: what the formula is asked for.
+        given: names that are explained.
+    """
+    lines, gives = _in_order(text, entry)
+    left = lines[-1].partition("=")[0] if lines and "=" in lines[-1] else ""
+    told = [line.partition("=")[2] for line in lines[:-1] if left and line in gives]
+    sides = [
+        [x for x in one.split("=") if not says_what_it_is(x) and not _is_of_parts(x, given)]
+        for one in told
     ]
-    formula = "=".join([left, *steps, lines[-1].partition("=")[2]]) if steps else lines[-1]
-    return formulas, f"{dollars}{formula}{dollars}"
+    dollars = "$" if is_latex(text) else ""
+    return [f"{dollars}{'='.join([left, *one])}{dollars}" for one in sides if one]
 
 
 _OF_PARTS = re.compile(r"([A-Za-z])_?\{?\d\}?(?:\s*\+\s*\1_?\{?\d\}?)+")
@@ -662,6 +685,8 @@ def joined_up(text: str) -> str:
 
 
 _SQUARE = re.compile(r"(.*?)\s*(?:(?:\^|\*\*)\s*(?:2|\{\s*2\s*\})|²)")
+_BEHIND_WORDS = re.compile(r"(?<![\\\w])(?!det )(?:[A-Za-z]{2,}|\w*[^\x00-\u2fff]) +[\\\w]")
+"""A word, and a name behind it: ``first x``."""
 _STATE = re.compile(r"(?:[csCS]|(?:q|th|theta)d{0,2}|d{1,2}(?:q|th|theta))_?\d+")
 
 
@@ -669,7 +694,7 @@ def _is_own_name(text: str) -> bool:
     """Whether a left side may be a name of the writer's, or the square of one: not of c2 or q2."""
     square = _SQUARE.fullmatch(text)
     if square is None:
-        return bool(_OWN_NAME.fullmatch(text))
+        return bool(_OWN_NAME.fullmatch(text)) and not _BEHIND_WORDS.search(text)
     with suppress(ExpressionError):
         name = entry_name(square[1])
         return bool(_NUMBERED.fullmatch(name)) and not _STATE.fullmatch(name)
@@ -859,7 +884,8 @@ def readings(text: str, entry: str, given: Container[str] = ()) -> list[str]:
     dollars = "$" if is_latex(text) else ""
     if _EQUATION.fullmatch(entry) and len(parts) == 2 and all(parts) and parts[0] != entry:
         return [f"{dollars}{part}{dollars}" for part in reversed(parts)]
-    if not 2 <= len(parts) <= _LONGEST_CHAIN or any(part[-1:] in ("", *"<>!") for part in parts):
+    unended = any(part[-1:] in ("", *"<>!+*/-") for part in parts)
+    if not 2 <= len(parts) <= _LONGEST_CHAIN or unended:
         return [text]
     rests = [k > 0 and _rests_on(one, given) for k, one in enumerate(parts)]
     named = [

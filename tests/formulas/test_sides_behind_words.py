@@ -209,3 +209,54 @@ def test_what_is_given_for_a_name_with_letters_behind_its_number_is_told(name):
     found = kl.diagnose("planar2r", "M12", f"{name} = l1*s1*qd1\nM12 = m2*l2^2 + m2*l1*l2*c2")
     assert found.agrees
     assert found.remarks == (f"not judged: what is given for {name}",)
+
+
+M, G = "m1*l1^2 + m2*(l1^2 + l2^2 + 2*l1*l2*cos(q2))", "(m1+m2)*g*l1*c1 + m2*g*l2*c12"
+OF_PARTS = [
+    ("planar2r", "g1", "term of the first mass: g1 = m1*g*l1*c1\nall terms: ", f"g1 = {G}"),
+    ("planar2r", "M11", "Start with M11 = m1*l1^2\nthen add the second mass: ", f"M11 = {M}"),
+    ("planar2r", "M11", "M11 = m1*l1^2  # first link\n", f"M11 = {M}  # both"),
+    ("planar2r", "x", "对第一杆 x = l1*c1\n末端 ", "x = l1*c1 + l2*c12"),
+    ("planar2r", "x", "first x = l1*c1, then ", "x = l1*c1 + l2*c12"),
+    ("planar2r", "x", "Gelenk 2: x = l1*c1\nWerkzeug: ", "x = l1*c1 + l2*c12"),
+    ("planar2r_rods", "M22", "about its centre M22 = m2*l2^2/12\nabout the joint ", "M22 = m2*l2^2/3"),
+    ("planar2r", "M", "first link: M = [m1*l1^2, 0; 0, 0]\nboth links: ",
+     f"M = [{M}, m2*(l2^2+l1*l2*c2); m2*(l2^2+l1*l2*c2), m2*l2^2]"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("robot", "entry", "part", "whole"), OF_PARTS)
+def test_what_is_said_of_a_part_is_not_held_against_the_whole(robot, entry, part, whole):
+    """Each was called wrong for its first line, of which words say what it is."""
+    found = kl.diagnose(robot, entry, part + whole)
+    assert found.agrees, found
+    assert any("another line" in one and "was not judged" in one for one in found.remarks), found
+    wrong = kl.diagnose(robot, entry, part + whole.replace("l2", "l1", 1))
+    assert not wrong.agrees, wrong
+
+
+def test_of_a_whole_and_a_part_behind_it_nothing_is_said():
+    text = f"all terms: g1 = {G}\nof which the first mass: g1 = m1*g*l1*c1"
+    with pytest.raises(ExpressionError, match="several lines that are not the same"):
+        kl.diagnose("planar2r", "g1", text)
+    # nothing but what leads over: the last line is wrong
+    for between in ("\nso ", ". Collecting terms, ", "\n"):
+        found = kl.diagnose("planar2r", "g1", f"g1 = {G}{between}g1 = {G.replace('c12', 'c2')}")
+        assert not found.agrees and "c2 should be c12" in found.causes[0].sentence, found
+
+
+ADDED = [
+    ("M11 = m1*l1^2\nM11 += {}", "M11"), ("M11 = m1*l1^2;\nM11 = M11 + {};", "M11"), ("M(1,1) = m1*l1^2;\nM(1,1) = M(1,1) + {};", "M11"),
+    ("a = m1*l1^2; a += {}; M11 = a", "M11"), ("M11 = m1*l1^2  # first\nM11 += {}  # second", "M11"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "entry"), ADDED)
+def test_what_is_added_to_a_name_belongs_to_it(text, entry):
+    """A right sum was called wrong for its first line."""
+    second = "m2*(l1^2 + l2^2 + 2*l1*l2*cos(q2))"
+    assert kl.diagnose("planar2r", entry, text.format(second)).agrees
+    wrong = kl.diagnose("planar2r", entry, text.format(second.replace("2*l1", "l1")))
+    assert not wrong.agrees and "2*l1*l2*cos(q2)" in str(wrong), wrong
+    with pytest.raises(ExpressionError, match="adds to what is not there"):
+        kl.diagnose("planar2r", entry, f"{entry} += {second}")

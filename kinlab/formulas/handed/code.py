@@ -152,6 +152,42 @@ def with_definitions(text: str) -> str:
     return "; ".join([*made, other.strip()]) if made else text
 
 
+_ADDED = r"[A-Za-z]\w*(?:\[[\d, ]+\]|\([\d, ]+\))?"
+_ADDS = re.compile(rf"({_ADDED})\s*(?:([-+])=|=\s*\1(?![\w\[(])\s*([-+]))\s*(\S[^=]*)")
+"""What is added to a name that has a value: ``M11 += b``, ``M11 = M11 + b``."""
+_BEHIND = re.compile(r"(?:^|[ \t]+)(?:%|#|//)[^\n]*$")
+"""A comment at a line's end."""
+_A_VALUE = re.compile(rf"({_ADDED})\s*=\s*(\S[^=]*)")
+
+
+def added_up(text: str) -> str:
+    """``M11 = a; M11 += b`` as ``M11 = a + (b)``; what is added to nothing stays as it is.
+
+    Args:
+        text: as typed.
+    """
+    parts = [(_BEHIND.sub("", one), _BEHIND.search(one)) for one in parts_at(text, ";\n")]
+    if not any(_ADDS.fullmatch(one) for one, _comment in parts):
+        return text
+    sums: dict[str, str] = {}
+    made: list[str] = []
+    for one, comment in parts:
+        adds, gives = _ADDS.fullmatch(one), _A_VALUE.fullmatch(one)
+        made += [comment[0].strip()] if comment else []
+        if adds and adds[1] in sums:
+            name = adds[1]
+            made.remove(f"{name} = {sums[name]}")
+            sums[name] += f" {adds[2] or adds[3]} ({adds[4].strip()})"
+        elif gives:
+            name = gives[1]
+            sums[name] = gives[2]
+        else:
+            made += [one] if one else []
+            continue
+        made.append(f"{name} = {sums[name]}")
+    return "\n".join(made)
+
+
 def _rows_together(text: str) -> str:
     """Rows in brackets, each in a line of its own, as one matrix."""
     found = _ROWS.fullmatch(text)

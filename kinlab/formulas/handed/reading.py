@@ -5,7 +5,12 @@ from __future__ import annotations
 import re
 import unicodedata
 
-from kinlab.formulas.handed.code import with_definitions, without_code, without_prompts
+from kinlab.formulas.handed.code import (
+    added_up,
+    with_definitions,
+    without_code,
+    without_prompts,
+)
 from kinlab.formulas.handed.columns import of_column
 from kinlab.formulas.handed.constants import without_constant
 from kinlab.formulas.handed.letters import plain_letters, siciliano_s_letters, without_marks
@@ -210,7 +215,7 @@ def as_formula(
     unjudged = _("the step {words!r} was not judged")
     steps = [unjudged.format(words=one[0].strip("=& ")) for one in STEP.finditer(text)]
     text, label = _without_label(_MIRRORED.sub("", _as_asked(_unlisted(of_packages(text)), entry)))
-    text = _HENCE.sub("\n", without_prompts(without_gaps(_OF_PLACE.sub(r"\1\2", text))))
+    text = _HENCE.sub("\n", added_up(without_prompts(without_gaps(_OF_PLACE.sub(r"\1\2", text)))))
     text = _BOLD_SIDES.sub(lambda found: found[1] or f" {found[2]}", text)
     text = _BULLET.sub("", text)
     text = written_out(with_definitions(text), place)

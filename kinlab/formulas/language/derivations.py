@@ -24,7 +24,7 @@ from kinlab.formulas.typed import (
     stands_in,
 )
 
-_PROGRAM = re.compile(r"\bdef\b|\blambda\b|\breturn\b|\[\[")
+_PROGRAM = re.compile(r"\bdef\b|\blambda\b|\breturn\b|\[\[|\w\s?[-+*/]=")
 _GRID = re.compile(r"\\begin\{(\w*(?:matrix|array|cases)\*?)\}.{0,2000}?\\end\{\1\}", re.DOTALL)
 """A matrix, which is no entry."""
 _A_GRID = "\0"
@@ -72,7 +72,7 @@ class _Equation:
 
 
 def conclusion(text: str, entry: str, last: bool = False) -> str:
-    """The equations of the entry in a text of several steps, as one chain, and what explains them.
+    """The equations of the entry in a text of several steps, and what explains them.
 
     Args:
         text: as typed.
@@ -91,11 +91,14 @@ def conclusion(text: str, entry: str, last: bool = False) -> str:
     if not formulas or text.count("=") < 2 + own[-1].right.count("=") or len(formulas) > _STEPS:
         return ""
     others = {own_name(one.name): one for one in found if one.name != own[-1].name}
-    chain = " = ".join([own[-1].name, *dict.fromkeys(formulas)])
+    name, steps = own[-1].name, [*dict.fromkeys(formulas)]
+    chain = " = ".join([name, *steps])
     kept = [f"{one.name} = {one.right}" for one in _explaining(chain, others)]
     if any(_SQUARE.search(one.name) and f"{one.name} =" not in "".join(kept) for one in found):
         return ""  # what is explained is a square, and none stands in the formula
-    told = "; ".join([*kept, chain])
+    named = begins_with(f"{name} = 0", entry)
+    lines = [f"{name} = {one}" for one in steps] if named else [chain]
+    told = "; ".join([*kept, *lines])
     told = f"${told}$" if "\\" in told else told
     return "" if _A_GRID in told else told
 

@@ -17,6 +17,7 @@ from kinlab.formulas.language.vocabulary import (
     LATIN,
     STEPS,
     chinese_left,
+    leads_over,
     says_nothing,
 )
 from kinlab.formulas.typed import begins_with
@@ -245,6 +246,17 @@ def own_sentence(text: str, entry: str) -> int:
     return begin if "=" in text[:begin] else 0
 
 
+def behind_the_first(text: str, entry: str) -> str:
+    """What stands behind the name of the first equation that gives the entry; all of no such text.
+
+    Args:
+        text: as typed.
+        entry: what it is asked for.
+    """
+    named = (x for x in _LEFT_SIDE.finditer(text) if begins_with(f"{x['name']} = 0", entry))
+    return text[min((found.end() for found in named), default=0) :]
+
+
 _LEFT_SIDE = re.compile(
     rf"(?:^|(?<=[\s$&:：,，;；{CHINESE}]))"
     r"(?P<name>\\?[A-Za-zα-ωΑ-Ω][^\s=+*/^-]{0,24})\s?&?\s?:?=(?!=)"
@@ -404,7 +416,23 @@ _LETTERS = 4
 
 
 def _words_in(text: str) -> bool:
-    return any(_WORDS[typeset].search(prose) for prose, typeset in _proses(text))
+    return any(_every_word(text))
+
+
+def _every_word(text: str) -> Iterator[str]:
+    for prose, typeset in _proses(text):
+        yield from (one[0] for one in _WORDS[typeset].finditer(prose))
+
+
+def say_of_what(text: str) -> bool:
+    """Whether words of a text may say of what each of its equations is: ``of the first link``.
+
+    Such as lead from one to the next do not: ``so``, ``by Steiner``.
+
+    Args:
+        text: as typed.
+    """
+    return not all(map(leads_over, _every_word(text)))
 
 
 @dataclass(frozen=True)

@@ -57,6 +57,12 @@ def is_linking(word: str) -> bool:
     return word.lower().strip(".") in told or not _not_made_of(word, told)
 
 
+def leads_over(word: str) -> bool:
+    """Whether a word leads from one equation to the next, and says nothing of what they are."""
+    told = _leading()
+    return is_program(word) or word.lower().strip(".") in told or not _not_made_of(word, told)
+
+
 def is_listed(word: str) -> bool:
     """Whether a word is in one of the lists, whatever the entry."""
     return word.lower() in _every()
@@ -77,6 +83,11 @@ def _every() -> frozenset[str]:
 @cache
 def _linking() -> frozenset[str]:
     return frozenset(_lists()["anywhere"]["linking"].split())
+
+
+@cache
+def _leading() -> frozenset[str]:
+    return _linking().union(_lists()["anywhere"]["leading"].split())
 
 
 @cache
