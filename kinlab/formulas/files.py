@@ -35,7 +35,7 @@ from kinlab.formulas.handed.equations import solved
 from kinlab.formulas.handed.rates import MOVING
 from kinlab.formulas.handed.reading import as_formula
 from kinlab.formulas.language.clauses import Claim, Holds
-from kinlab.formulas.language.derivations import conclusion, numbers_beside, steps_beside
+from kinlab.formulas.language.derivations import conclusion, steps_beside, values_beside
 from kinlab.formulas.language.prose import (
     Doubt,
     behind_the_first,
@@ -307,9 +307,9 @@ def _formula_file(
     given = {_bare_name(x) for x in opened.union(*map(_used, (file, *others)))}
     used_up = {*map(_bare_name, file.symbols)}
     for key in left:
-        for name, number in numbers_beside(doubts[key][0]):
+        for name, value in values_beside(doubts[key][0]):
             if holds and _bare_name(name) not in used_up:  # no formula has it
-                _refuse_untrue(name, number, holds, f"{place}: {key}")
+                _refuse_untrue(name, value, holds, f"{place}: {key}")
     for key in left.keys() - ends.keys():
         steps = [*dict.fromkeys(steps_beside(doubts[key][0], key))]
         steps = [one for one in steps if _bare_name(one) not in given]
@@ -396,7 +396,7 @@ def _used(file: FormulaFile) -> set[str]:
 
 
 def _refuse_untrue(name: str, formula: str, holds: Holds, place: str) -> None:
-    """Refuses a number that is said of a name of the arm's beside a formula, and is another.
+    """Refuses a number, or a name, that is said to be one of the arm's and is another.
 
     Raises:
         ExpressionError: with both.

@@ -1275,11 +1275,17 @@ _OF_NO_POINT = (
 """Entries before which no coordinate stands: ``x = ...`` is no entry of the Jacobian."""
 
 
+_UNFINISHED = re.compile(r"[(\[]\s*,|,\s*[)\]]")
+"""Places of which one is lacking: ``J(1,)``."""
+
+
 def of_one_name(left: str, name: str) -> bool:
     """Whether a left side may stand before an entry: G2 and phi_2 before g2, tau before tau1.
 
     A name that no book has for anything else may be the writer's own.
     """
+    if _UNFINISHED.search(left):
+        return False
     (head, places), (mine, wanted) = _head_and_places(left), _head_and_places(name)
     asked = _asked(name if name not in _COORDINATES else f"fk[{'xyz'.index(name)},3]")
     known = [group for group in _MEANT if head in group]

@@ -197,10 +197,12 @@ class _Facts:
         return bool(abs(abs(own) - value) <= TOLERANCES.formula_agrees * max(abs(value), 1.0))
 
     def value(self, claim: Claim) -> bool | None:
-        """Of a name whether the arm's number is that; not known of what is no number."""
+        """Of a name whether the arm's number is that, or that of another name; else not known."""
         (name,), (typed,) = claim.names, claim.words
         found = _NUMBER.fullmatch(typed)
-        return None if found is None else self._is_value(name.replace("_", ""), float(found[1]))
+        other = vocabulary(self.table).values.get(typed.replace("_", ""))
+        value = other if found is None else float(found[1])
+        return None if value is None else self._is_value(name.replace("_", ""), value)
 
     def singular(self, claim: Claim) -> bool | None:
         """Whether the arm is singular wherever a joint is at an angle, whatever the others."""

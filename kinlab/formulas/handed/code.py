@@ -8,6 +8,13 @@ from __future__ import annotations
 import re
 from itertools import islice
 
+from kinlab.formulas.language.vocabulary import (
+    CHINESE,
+    LATIN,
+    STEPS,
+    chinese_left,
+    says_nothing,
+)
 from kinlab.formulas.signs.brackets import closes, outside, parts_at
 
 _FENCE = re.compile(r"^\s*```[\w+-]*\s*\n(.*?)\n?\s*```\s*$", re.DOTALL)
@@ -152,6 +159,16 @@ def with_definitions(text: str) -> str:
     return "; ".join([*made, other.strip()]) if made else text
 
 
+_COMMENT_WORDS = re.compile(rf"[{LATIN}]{{2,}}|[{CHINESE}]+")
+
+
+def _is_of_a_part(comment: str) -> bool:
+    """Whether a comment has no words but those of steps and parts."""
+    plain = not re.search("[=<>*^]", comment)
+    words = _COMMENT_WORDS.findall(comment)
+    return plain and all(says_nothing(x, STEPS) or not chinese_left(x, STEPS) for x in words)
+
+
 _ADDED = r"[A-Za-z]\w*(?:\[[\d, ]+\]|\([\d, ]+\))?"
 _ADDS = re.compile(rf"({_ADDED})\s*(?:([-+])=|=\s*\1(?![\w\[(])\s*([-+]))\s*(\S[^=]*)")
 """What is added to a name that has a value: ``M11 += b``, ``M11 = M11 + b``."""
@@ -163,6 +180,8 @@ _A_VALUE = re.compile(rf"({_ADDED})\s*=\s*(\S[^=]*)")
 def added_up(text: str) -> str:
     """``M11 = a; M11 += b`` as ``M11 = a + (b)``; what is added to nothing stays as it is.
 
+    What comments say of the parts, ``# link 2``, is left out.
+
     Args:
         text: as typed.
     """
@@ -173,7 +192,7 @@ def added_up(text: str) -> str:
     made: list[str] = []
     for one, comment in parts:
         adds, gives = _ADDS.fullmatch(one), _A_VALUE.fullmatch(one)
-        made += [comment[0].strip()] if comment else []
+        made += [comment[0].strip()] if comment and not _is_of_a_part(comment[0]) else []
         if adds and adds[1] in sums:
             name = adds[1]
             made.remove(f"{name} = {sums[name]}")

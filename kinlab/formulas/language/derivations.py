@@ -32,6 +32,8 @@ _LINES = re.compile(
     r"\\\\(?:\[[\w. ]{0,9}\])?|\\(?:begin|end)\{[a-z]+\*?\}|\\[\[\]()]|\$+|&|\\q?quad(?![A-Za-z])"
     r"|\\(?:Rightarrow|Longrightarrow|implies|therefore|Leftrightarrow|iff)(?![A-Za-z])"
     r"|(?<![<>=])=>|[⇒⟹→⟶∴⇔]|\\text\w*\s*\{[^{}]*\}"
+    r"|(?<=[\w)}\]])\s{1,4}\((?=(?:and|und|et|where|with|和|且)[\s\\$]|\w{1,6}\s?=)"
+    rf"|(?<=[\w)}}\]])\s{{1,4}}\((?:[{LATIN}]{{2,20}}[ ,]{{1,2}}){{2,8}}(?:[{LATIN}]{{2,20}}|\d)\)"
 )
 """Where one step ends and another begins; words in LaTeX."""
 _GAPS = re.compile(r"\\[,;:! ]")
@@ -52,7 +54,7 @@ _END = re.compile(
 """What ends a formula, outside of brackets; a word where it is none of a formula."""
 _SQUARE = re.compile(r"(?:\^\{?2\}?|²|\*\*2)$")
 _NUMBER = re.compile(r"[\d₀-₉]")
-_OF_LETTERS = re.compile(r"[^\W\d_]{1,8}_?\{?\d.*[^\W\d_]|[*/^+]|\\frac|sin|cos")
+_OF_LETTERS = re.compile(r"[^\W\d_]{1,8}_?\{?\d.*[^\W\d_]|[*/^+]|\\frac|sin|cos|^[lmIg]_?c?\d")
 _STEPS, _LONGEST = 6, 8000
 _BLANKS = re.compile(r"(?<!\s)\s*\n\s*")
 
@@ -109,7 +111,7 @@ def _may_be(name: str) -> bool:
 
 
 def steps_beside(text: str, entry: str) -> list[str]:
-    """The names, as typed, to which other equations give more than a number.
+    """The names, as typed, to which other equations give a name of the arm's, or a formula.
 
     Args:
         text: as typed.
@@ -125,19 +127,19 @@ def steps_beside(text: str, entry: str) -> list[str]:
     ]
 
 
-def numbers_beside(text: str) -> list[tuple[str, str]]:
-    """The names, as typed, to which equations of a text give a number; lengths in metres, masses in
-    kilograms, or without a unit.
+def values_beside(text: str) -> list[tuple[str, str]]:
+    """The names, as typed, to which equations of a text give a number, or another name; lengths in
+    metres, masses in kilograms, or without a unit.
 
     Args:
         text: as typed.
     """
-    told = ((one.name, _A_NUMBER.fullmatch(one.right)) for one in _told(text))
-    return [(name, found["number"]) for name, found in told if found is not None]
+    told = ((one.name, _A_VALUE.fullmatch(one.right)) for one in _told(text))
+    return [(name, found["value"]) for name, found in told if found is not None]
 
 
-_A_NUMBER = re.compile(r"(?P<number>\d+(?:\.\d+)?)\s?(?:m|kg)?[.)]?")
-"""A number, and its unit."""
+_A_VALUE = re.compile(r"(?P<value>\d+(?:\.\d+)?|[lmIg]_?c?\d)\s?(?:m|kg)?[.)]?")
+"""A number, and its unit; or a name of the arm's."""
 
 
 def _told(text: str) -> list[_Equation]:

@@ -49,7 +49,7 @@ _COMMENT = re.compile(r"(?<!\\)(?<![\d ] )(?:^|(?<=[\s;]))%[^\n=]*$", re.MULTILI
 _ABOUT = re.compile(
     rf"(?<![\w*/^+=-])[xyz]-(?=(?:coordinate|component|position|koordinate|komponente)[{LATIN}]*)"
     r"|[(（]\s*(?:units?|einheit(?:en)?|单位)\s*[:：]?\s*(?:kg|rad|Nm|N|m|J|s|SI)(?![A-Za-z])[\s/^0-9*·kgNmJsrad,，、]{0,8}[)）]"
-    rf"|(?<=[\w)}}\]])\s\((?:[{LATIN}]{{2,20}}[ ,]{{1,2}}){{2,8}}[{LATIN}]{{2,20}}\)",
+    rf"|(?<=[\w)}}\]])\s{{1,4}}\((?:[{LATIN}]{{2,20}}[ ,]{{1,2}}){{2,8}}(?:[{LATIN}]{{2,20}}|\d)\)",
     re.IGNORECASE,
 )
 """Letters that are part of a word, a unit in parentheses, and words in parentheses."""
@@ -241,9 +241,33 @@ def _with_the_last(text: str) -> str:
     linked = run and not _OF_A_REASON.search(run[-1][0]) and all(is_linking(x[0]) for x in run)
     if not side or not linked or not _ends_formula(plain) or plain.endswith("("):
         return text
+    front, given = _without_what_is_given(front, rest)
     if front.endswith("$") and rest.startswith("$"):
-        return f"{plain} = {rest.lstrip('$')}"
-    return f"{front} = {rest}" if "$" not in front[-1:] + rest[:1] else text
+        return f"{front.rstrip('$ ')} = {rest.lstrip('$')}{given}"
+    return f"{front} = {rest}{given}" if "$" not in front[-1:] + rest[:1] else text
+
+
+def _without_what_is_given(front: str, rest: str) -> tuple[str, str]:
+    """What the last formula goes on with: ``C11 = -h*qd2`` of ``C11 = -h*qd2 with h = ..., i.e.``;
+    and what is explained behind it, where that has not all the names of the last formula.
+    """
+    found = next(reversed([*_GIVEN.finditer(front)]), None)
+    if found is None or "=" not in front[: found.start()]:
+        return front, ""
+    main, given = front[: found.start()].rstrip(" ,;，；"), front[found.end() :]
+    names = {*_A_NAME.findall(rest)}
+    here, there = ({*_A_NAME.findall(one)} for one in (given, main))
+    more = names - here
+    of_the_last = more & there or any(_A_RATE.match(one) for one in more)
+    return (main, f" where {given}") if of_the_last else (front, "")
+
+
+_GIVEN = re.compile(
+    r"(?:[,;，；]?\s*(?:(?<!\w)(?:with|where|mit|wobei|avec|où|con)\s+|其中\s*)|[,;，；]\s*)"
+    r"(?=\$?\\?[A-Za-z]\w{0,5}\s*=)"
+)
+_A_RATE = re.compile(r"qd|thd|thetad|\\dot|dq|d?dth|omega")
+_A_NAME = re.compile(r"\\?[A-Za-zα-ω]+_?\{?\w*\}?")
 
 
 _THAT_IS = re.compile(r"\b(?:i\.\s?e|d\.\s?h)\.(?=[\s,$])", re.IGNORECASE)

@@ -118,6 +118,7 @@ _OTHERWISE = re.compile(
     r"|\b(?:first|second|third|last|erste[sn]?|zweite[sn]?)\s+(?:link|glied|rod|body|term)\s+"
     r"(?:only|allein|alone)\b"
     r"|\bonly\s+the\s+(?:first|second|third|last)\s+(?:link|rod|body|term)\b"
+    r"(?!\s+(?:depends|contains|involves|has|appears|changes|varies|moves)\b)"
     r"|\b(?:roughly|ungefähr|etwa|environ|circa|approssimat\w*|aproximad\w*|ongeveer)\b"
     r"|(?<![а-яё])(?:не(?!\s+завис)|нет|без|ошиб\w*|неверн\w*|неправильн\w*|приближ\w*|вместо|только"
     r"|противоположн\w*|обратн\w*\s+знак\w*|вертикал\w*|горизонтал\w*|градус\w*|пренебр\w*|отброш\w*"

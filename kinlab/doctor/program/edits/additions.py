@@ -523,7 +523,9 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
     negated = isinstance(parent, ast.UnaryOp)  # -w*l
     share = isinstance(node, ast.BinOp) and isinstance(node.op, ast.Div)
     share = share and here.field == "right" and isinstance(getattr(parent, "op", None), ast.Mult)
-    if (isinstance(node, ENTRIES) or dot or share) and not power and (operated or term or negated):
+    signs = isinstance(parent, ast.BinOp) and isinstance(here.above[-2], ast.Compare)  # a*b < 0
+    may_be = (isinstance(node, ENTRIES) or dot or share) and not power and not signs
+    if may_be and (operated or term or negated):
         yield here.instead(ast.BinOp(node, ast.Pow(), number(2)), "power", 1.08)
     yield from _squares_and_products(here, scope)
     if term:

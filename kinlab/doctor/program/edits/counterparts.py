@@ -10,10 +10,10 @@ import ast
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
-from kinlab.doctor.bytecode.syntax import names, nodes, text_of
+from kinlab.doctor.bytecode.syntax import nodes, text_of
 from kinlab.doctor.derivations.words import minus
 from kinlab.doctor.program.edits.exchanges import Renamed
-from kinlab.doctor.program.edits.scope.forms import named, summands
+from kinlab.doctor.program.edits.scope.forms import summands
 from kinlab.doctor.program.places import ProgramEdit
 from kinlab.doctor.program.trial import FieldChange
 
@@ -60,7 +60,8 @@ def _with(value: ast.expr, term: ast.expr, other: ast.expr) -> ast.expr:
 
 def _renamed(term: ast.expr, way: Names) -> ast.expr | None:
     """A term with the counterparts of its names; None where too few have one."""
-    others: dict[str, ast.expr] = {x: named(way[x]) for x in names(term) if x in way}
+    pieces = (text_of(one) for one in nodes(term) if isinstance(one, _PIECES))
+    others = {x: ast.parse(way[x], mode="eval").body for x in pieces if x in way}
     return Renamed(others).of(term) if len(others) >= _LEAST else None
 
 
@@ -103,21 +104,30 @@ def _beside(tree: ast.AST) -> Iterator[tuple[ast.AST, ast.AST]]:
 
 
 def _counterparts(one: ast.AST, other: ast.AST) -> Names:
-    """The names of two pieces of one form that are not the same; none where the form is not."""
-    first, last = nodes(one), nodes(other)
-    if [*map(type, first)] != [*map(type, last)]:
-        return {}
+    """The names of two pieces of one form that are not the same; none where the form is not.
+
+    A name may have an entry of a list for its counterpart: ``m*c`` and ``mass[j]*ci``.
+    """
     found: Names = {}
-    for x, y in zip(first, last, strict=True):
+    waiting = [(one, other)]
+    while waiting:
+        x, y = waiting.pop()
+        if isinstance(x, ast.Name) or (isinstance(y, ast.Name) and isinstance(x, _PIECES)):
+            if not isinstance(y, _PIECES) or found.setdefault(text_of(x), text_of(y)) != text_of(y):
+                return {}
+            continue
+        if type(x) is not type(y):
+            return {}
         if isinstance(x, ast.Constant) and isinstance(y, ast.Constant) and x.value != y.value:
             return {}
         if isinstance(x, ast.Attribute) and isinstance(y, ast.Attribute) and x.attr != y.attr:
             return {}
-        if (
-            isinstance(x, ast.Name)
-            and isinstance(y, ast.Name)
-            and found.setdefault(x.id, y.id) != y.id
-        ):
+        inside = [[*ast.iter_child_nodes(node)] for node in (x, y)]
+        if len(inside[0]) != len(inside[1]):
             return {}
+        waiting += zip(*inside, strict=True)
     found = {x: y for x, y in found.items() if x != y}
     return found if len({*found.values()}) == len(found) else {}
+
+
+_PIECES = (ast.Name, ast.Subscript)

@@ -8,7 +8,7 @@ from itertools import combinations
 from typing import Any
 
 from kinlab.doctor.bytecode.syntax import beginning, called, copied, names, nodes, text_of
-from kinlab.doctor.program.edits.chains import SUMS, chain, joined, opposite
+from kinlab.doctor.program.edits.chains import SUMS, chain, joined, members, opposite
 from kinlab.doctor.program.edits.scope.forms import Turned, statement_of, summands
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.entries import without_the_first
@@ -174,17 +174,25 @@ def _poses_exchanged(here: Here, value: ast.expr) -> Iterator[ProgramEdit]:
 def _coefficients_exchanged(
     here: Here, value: ast.expr, observed: Observed
 ) -> Iterator[ProgramEdit]:
-    """Two terms of a sum with the sum in front of one another: ``(1 - c)*W + (t - s)*W @ W``."""
+    """Two terms of a sum with the sum in each for one another: ``(1 - c)*W + (t - s)*W @ W``,
+    ``c*(x - bx) - s*(y - by)``.
+    """
     first, terms = chain(value, SUMS)
     for one, other in combinations([first, *(term for _op, term in terms)], 2):
-        heads = [beginning(x) for x in (one, other)]
-        fronts = [x for x in heads if isinstance(x, ast.BinOp) and isinstance(x.op, SUMS)]
+        fronts = [sum_ for x in (one, other) if (sum_ := _only_sum(x)) is not None]
         if len(fronts) < 2:
             continue
         texts = [ast.unparse(x) for x in fronts]
         if texts[0] != texts[1] and all(observed.shape(x) == () for x in fronts):
             both = _Swapped(dict[str, ast.expr](zip(texts, reversed(fronts), strict=True)))
             yield here.within(here.node, "value", both.of(value), "names exchanged", _FRONTS)
+
+
+def _only_sum(term: ast.expr) -> ast.expr | None:
+    """The sum in front of a term, or its only factor that is one."""
+    factors = [beginning(term), *members(chain(term, (ast.Mult,)))]
+    sums = {id(x): x for x in factors if isinstance(x, ast.BinOp) and isinstance(x.op, SUMS)}
+    return next(iter(sums.values())) if len(sums) == 1 else None
 
 
 def of_terms(here: Here, observed: Observed) -> Iterator[ProgramEdit]:

@@ -23,7 +23,13 @@ def of_loop(
 
 
 def _as_rows(over: ast.expr, trial: Trial) -> ast.expr:
-    """What a loop goes over, with what a function of the program's yields in its place."""
+    """What a loop goes over, with what a function of the program's yields in its place, or what is
+    appended to a list.
+    """
+    if isinstance(over, ast.Name):
+        calls = (one for tree in trial.trees for one in nodes(tree) if isinstance(one, ast.Call))
+        rows = [one.args[0] for one in calls if _appends(one, over.id)]
+        return ast.List(rows[-1:], ast.Load()) if rows else over
     if not isinstance(over, ast.Call):
         return over
     for part, tree in zip(trial.program.parts, trial.trees, strict=True):
@@ -31,6 +37,13 @@ def _as_rows(over: ast.expr, trial: Trial) -> ast.expr:
         if part.name == called(over) and given:
             return ast.List(given[-1:], ast.Load())
     return ast.Call(over.func, [_as_rows(one, trial) for one in over.args], over.keywords)
+
+
+def _appends(call: ast.Call, name: str) -> bool:
+    """Whether a call appends several things together to a list: ``stack.append((R, p))``."""
+    to = call.func.value if isinstance(call.func, ast.Attribute) else None
+    own = isinstance(to, ast.Name) and to.id == name and called(call) == "append"
+    return own and bool(call.args) and isinstance(call.args[0], ast.Tuple)
 
 
 def _passed(target: ast.expr, over: ast.expr, observed: Observed) -> Iterator[tuple[str, Shape]]:
