@@ -34,6 +34,7 @@ from kinlab.formulas.handed.columns import with_matrices
 from kinlab.formulas.handed.equations import solved
 from kinlab.formulas.handed.rates import MOVING
 from kinlab.formulas.handed.reading import as_formula
+from kinlab.formulas.language.cases import without_special_cases
 from kinlab.formulas.language.clauses import Claim, Holds
 from kinlab.formulas.language.derivations import conclusion, steps_beside, values_beside
 from kinlab.formulas.language.prose import (
@@ -162,6 +163,7 @@ def _every_text(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
 def _conclusion(entry: str, text: str, alone: bool) -> str:
     """What a derivation comes to; empty where it is none, or words in it mean something else."""
     with suppress(ExpressionError):
+        text, _cases = without_special_cases(text, entry)
         found = conclusion(text, entry, alone)
         if found:
             refuse_meanings_of_steps(text, entry, "")
@@ -215,7 +217,7 @@ def _formula_file(
     doubts: dict[str, tuple[str, list[tuple[str, str]]]] = {}
     for key, value in list(entries.items()):
         at = f"{place}: {key}"
-        text = _text(value, at)
+        text, cases = without_special_cases(_text(value, at), key)
         plain = ends.get(key, text)
         plain = plain if last is None else without_its_axes(plain, key, last)
         entries[key], remarks[key], told = as_formula(plain, key, at, holds, key in whole)
@@ -225,6 +227,9 @@ def _formula_file(
             end = plain.strip("$")
             end = _EQUATION_BEHIND.split(end)[-1] if say_of_what(text) else end
             remarks[key] = said.format(formula=end[:_SHOWN])
+        if cases:
+            said = _("not judged: the special case {case!r}").format(case=cases[0][:_SHOWN])
+            remarks[key] = "; ".join(filter(None, (remarks[key], said)))
         doubts[key] = text, told
         entries[key] = typed.as_column(entries[key], key)
         parts = {} if key in whole else typed.several(entries[key], key)

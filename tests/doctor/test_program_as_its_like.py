@@ -197,11 +197,79 @@ def f(q, v, a):
         out[k] = moment
     return out
 """
+APPENDED = """
+import numpy as np
+L = [0.5, 0.4, 0.25]
+
+def f(q, wrench):
+    angle, point, joints = 0.0, np.zeros(3), []
+    for length, turn in zip(L, q):
+        angle += turn
+        joints.append((angle, point))
+        point = point + length*np.array([np.cos(angle), np.sin(angle), 0.0])
+    force, moment = wrench[:3], wrench[3:]
+    return np.array([(moment + np.cross(point - own, force))[2] for _turn, own in joints])
+"""
+SUMS = """
+from math import atan2, cos, sin, sqrt
+import numpy as np
+CRANK, ROD, HALF = 0.09, 0.09, 0.059
+
+def leg(x, y, base, side):
+    u, v = x - base, y
+    k = (CRANK**2 + u**2 + v**2 - ROD**2)/(2*CRANK)
+    turn = atan2(v, u) - atan2(sqrt(u**2 + v**2 - k**2), k)
+    ex, ey = base + CRANK*cos(turn), CRANK*sin(turn)
+    bend = cos(turn)*(y - ey) - sin(turn)*(x - ex)
+    if bend*side < 0:
+        turn = atan2(v, u) + atan2(sqrt(u**2 + v**2 - k**2), k)
+    return turn
+
+def f(xy, mode):
+    return np.array([atan2(sin(t), cos(t)) for t in (leg(*xy, HALF, mode[0]), leg(*xy, -HALF, mode[1]))])
+"""
+STEINER = """
+import numpy as np
+L, M = [0.5, 0.4, 0.25], [3.0, 2.0, 1.0]
+
+def f(q):
+    t = np.cumsum(q)
+    ends = [np.zeros(2)]
+    for length, angle in zip(L, t):
+        ends.append(ends[-1] + length*np.array([np.cos(angle), np.sin(angle)]))
+    mass, centre, inertia = 0.0, np.zeros(2), 0.0
+    out = np.zeros((3, 3))
+    for k in (2, 1, 0):
+        middle, total = (ends[k] + ends[k + 1])/2, mass + M[k]
+        joint = (mass*centre + M[k]*middle)/total
+        inertia = inertia + M[k]*L[k]**2/12 + M[k]*np.sum((middle - joint)**2) + mass*np.sum((centre - joint)**2)
+        mass, centre = total, joint
+        for i in range(k + 1):
+            out[i, k] = out[k, i] = inertia + mass*(centre - ends[k]) @ (centre - ends[i])
+    return out
+"""
+LONG_ROWS = """
+import numpy as np
+
+def f(q):
+    a = [0, 0, 0, 0.0825, -0.0825, 0, 0.088, 0]
+    d = [0.333, 0, 0.316, 0, 0.384, 0, 0, 0.107]
+    turn = [0, -1, 1, 1, -1, 1, 1, 0]
+    T = np.eye(4)
+    for k, th in enumerate([*q, 0.0]):
+        c, s, ca, sa = np.cos(th), np.sin(th), float(turn[k] == 0), turn[k]
+        T = T @ np.array([[c, -s, 0, a[k]], [s*ca, c*ca, -sa, -d[k]*sa], [s*sa, c*sa, ca, d[k]*ca], [0, 0, 0, 1]])
+    return T
+"""
 
 
 @pytest.mark.parametrize(
     ("robot", "quantity", "text", "right", "slip"),
     [
+        ("planar3r", "statics", APPENDED, "point - own, force", "point - joints[0][1], force"),
+        ("equal_links", "fivebar_angles", SUMS, "cos(turn)*(y - ey) - sin(turn)*(x - ex)", "cos(turn)*(x - ex) - sin(turn)*(y - ey)"),
+        ("planar3r", "mass_matrix", STEINER, " + mass*np.sum((centre - joint)**2)", ""),
+        ("panda", "fk", LONG_ROWS, "0, 0.384, 0, 0, 0.107", "0.384, 0, 0, 0, 0.107"),
         ("stanford", "fk", DEGREES, "0.0203, 0.0, 0.0, -90*deg", "0.0203, 0.0, 0.0, 90*deg"),
         ("stanford", "jacobian", KINDS, '("P", 0.0203', '("R", 0.0203'),
         ("spatial3r", "mass_matrix", TENSORS, "xy=0.001, yz=0.0005", "xy=-0.001, yz=-0.0005"),
@@ -215,7 +283,7 @@ def f(q, v, a):
         ("planar2r_rods", "inverse_without_gravity", AT_REST, "np.array([0.0, 0.0])", "np.array([0.0, 9.81])"),
         ("stanford", "tip_speed_squared", ONE_KIND, "(0 if slide else qd[k])*z", "qd[k]*z"),
     ],
-    ids=["degrees", "kinds", "signs", "a gradient", "uphill", "counterparts", "mixed terms", "halves", "flange", "symbols", "at rest", "one kind"],
+    ids=["a name of a loop", "sums", "Steiner", "a long row", "degrees", "kinds", "signs", "a gradient", "uphill", "counterparts", "mixed terms", "halves", "flange", "symbols", "at rest", "one kind"],
 )  # fmt: skip
 def test_what_is_lacking_is_told_by_its_like(robot, quantity, text, right, slip, tmp_path) -> None:
     if slip:

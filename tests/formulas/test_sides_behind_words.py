@@ -260,3 +260,68 @@ def test_what_is_added_to_a_name_belongs_to_it(text, entry):
     assert not wrong.agrees and "2*l1*l2*cos(q2)" in str(wrong), wrong
     with pytest.raises(ExpressionError, match="adds to what is not there"):
         kl.diagnose("planar2r", entry, f"{entry} += {second}")
+
+
+H = "m2*l1*lc2*sin(q2)"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"C11 = -h*qd2 with h = {H}, i.e. -{H}*qd2", f"C11 = -h*qd2, h = {H}, that is -{H}*qd2",
+        f"C11 = -h*qd2，其中 h = {H}，即 -{H}*qd2",
+        r"$C_{11} = -h\dot q_2$ with $h = m_2 l_1 l_{c2}\sin q_2$, i.e. $-m_2 l_1 l_{c2}\sin q_2\,\dot q_2$",
+    ],
+)  # fmt: skip
+def test_what_goes_on_behind_an_explanation_is_the_formula_s(text):
+    """The last side was taken for what h is, and the right formula called wrong."""
+    assert kl.diagnose("planar2r_rods", "C11", text).agrees
+    wrong = (
+        text.replace("*qd2", "*qd1") if "*qd2" in text else text.replace(r"\dot q_2", r"\dot q_1")
+    )
+    last = text[: -len("qd2")] + "qd1" if "*qd2" in text else wrong
+    assert not kl.diagnose("planar2r_rods", "C11", last).agrees
+    said = f"C11 = -h*qd2 with h = {H}, i.e. m2*l1*l2*sin(q2)/2"
+    assert kl.diagnose("planar2r_rods", "C11", said).agrees
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "At q1 = q2 = 0: g2 = m2*g*l2.\nIn general g2 = m2*g*l2*cos(q1+q2)",
+        "Für q1 = 0 ist g2 = m2*g*l2*cos(q2), ein Sonderfall.\nAllgemein: g2 = m2*g*l2*cos(q1+q2)",
+        "当 q2 = 0 时：g2 = m2*g*l2*cos(q1)\n一般地：g2 = m2*g*l2*cos(q1+q2)",
+    ],
+)
+def test_of_special_cases_and_what_holds_in_general_the_latter_is_judged(text):
+    found = kl.diagnose("planar2r", "g2", text)
+    assert found.agrees and any("not judged: the special case" in x for x in found.remarks), found
+    wrong = kl.diagnose("planar2r", "g2", text[::-1].replace("soc", "nis", 1)[::-1])
+    assert not wrong.agrees and "cos" in str(wrong.causes[0].sentence), wrong
+
+
+def test_a_state_in_a_sentence_explains_no_name():
+    """It was put in for q2 everywhere, and the right formula called wrong."""
+    text = "In general g2 = m2*g*l2*cos(q1+q2), for q2 = 0 it is g2 = m2*g*l2*cos(q1)"
+    assert kl.diagnose("planar2r", "g2", text).agrees
+
+
+def test_what_is_said_of_names_that_the_formula_has_not_is_told():
+    right = "x = l1*cos(q1) + l2*cos(q1+q2)"
+    for behind, names in (("(a1=l2, a2=l1)", "a1, a2"), ("(and y = l1*cos(q1))", "y")):
+        found = kl.diagnose("planar2r", "x", f"{right} {behind}")
+        assert found.agrees and f"not judged: what is given for {names}" in found.remarks, found
+    with pytest.raises(ExpressionError, match="is not so of this robot"):
+        kl.diagnose("planar2r", "x", f"{right} (l1=l2)")
+
+
+@pytest.mark.parametrize("name", ["J(1,)", "J(,2)"])
+def test_a_name_that_lacks_a_place_is_none(name):
+    with pytest.raises(ExpressionError, match="which is another"):
+        kl.diagnose("planar2r", "J12", f"{name} = -l2*sin(q1+q2)")
+
+
+def test_what_a_function_answers_by_the_entry_s_name():
+    text = "def kinetic(q2, qd1, qd2):\n    x = l1*cos(q1)\n    x += l2*cos(q1+q2)\n    return x"
+    assert kl.diagnose("planar2r", "x", text).agrees
+    assert not kl.diagnose("planar2r", "x", text.replace("l2*cos", "l2*sin")).agrees

@@ -31,7 +31,7 @@ from kinlab.formulas.signs.packages import STEP, of_packages
 from kinlab.formulas.signs.printed import as_typed
 from kinlab.formulas.signs.remarks import without_numbers
 from kinlab.formulas.text import refuse_nested
-from kinlab.formulas.typed import without_gaps
+from kinlab.formulas.typed import begins_with, without_gaps
 from kinlab.host.language import _
 
 _ALONE = re.compile(
@@ -252,6 +252,9 @@ def as_formula(
     refuse_comments(text, place)
     text = without_remark_behind(text, place)
     text = without_code(text, not several and bool(_ALONE.fullmatch(entry)))
+    text = _ANSWERED.sub(
+        lambda found: "" if begins_with(f"{found[1]} = 0", entry) else found[0], text
+    )
     text = undressed(text, entry)
     text = _behind(text)
     text, left = without_words(text, entry, place)
@@ -265,6 +268,8 @@ def as_formula(
     )
 
 
+_ANSWERED = re.compile(r"(?<=\n)[ \t]*([A-Za-z]\w*)\s*$")
+"""What a function answers, where that is a name."""
 _MIRRORED = re.compile(
     r"\s{0,9}\((?:[^()=\n]{0,40}[\s,:])?[A-Za-z]_?\{?([1-9])([1-9])\}?\s{0,9}=\s{0,9}[A-Za-z]_?\{?\2\1\}?\s{0,9}\)"
 )

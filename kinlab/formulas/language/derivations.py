@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 
+from kinlab.formulas.language.prose import is_condition
 from kinlab.formulas.language.sentences import is_word
 from kinlab.formulas.language.vocabulary import CHINESE, LATIN, is_linking
 from kinlab.formulas.typed import (
@@ -92,7 +93,11 @@ def conclusion(text: str, entry: str, last: bool = False) -> str:
     formulas += [_formula(one.right, True) for one in own[-1:]]
     if not formulas or text.count("=") < 2 + own[-1].right.count("=") or len(formulas) > _STEPS:
         return ""
-    others = {own_name(one.name): one for one in found if one.name != own[-1].name}
+    others = {
+        own_name(one.name): one
+        for one in found
+        if one.name != own[-1].name and not is_condition(f"{one.name} = {one.right}")
+    }
     name, steps = own[-1].name, [*dict.fromkeys(formulas)]
     chain = " = ".join([name, *steps])
     kept = [f"{one.name} = {one.right}" for one in _explaining(chain, others)]

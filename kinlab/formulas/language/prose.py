@@ -380,6 +380,11 @@ def condition_in_front(text: str, entry: str) -> bool:
     return not re.search(rf"[*^]|{name}", front) and _words_in(front)
 
 
+def has_condition(text: str) -> bool:
+    """Whether an equation in a text says when something holds: ``for q2 = 0: g2 = ...``."""
+    return next(_conditions_in(flat(text)), None) is not None
+
+
 def is_condition(equation: str) -> bool:
     """Whether an equation says when a formula holds, and no name's meaning: ``q2 = 0``."""
     found = next(_conditions_in(flat(equation).strip()), None)

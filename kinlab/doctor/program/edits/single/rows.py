@@ -95,15 +95,19 @@ def of_sequence(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
 
 
 def _neighbours(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
-    """Two transforms of a list for one another that stand side by side: of a long one, too."""
+    """Two transforms of a list for one another that stand side by side: of a long one, too; and
+    two numbers of a long one.
+    """
     elements = here.node.elts
     shapes = [observed.shape(one) for one in elements]
     for k in range(len(elements) - 1):
         square = shapes[k] if shapes[k] in ((3, 3), (4, 4)) else None
         same = ast.dump(elements[k]) == ast.dump(elements[k + 1])
+        swapped = [*elements[:k], elements[k + 1], elements[k], *elements[k + 2 :]]
         if square is not None and shapes[k + 1] == square and not same:
-            swapped = [*elements[:k], elements[k + 1], elements[k], *elements[k + 2 :]]
             yield here.within(here.node, "elts", swapped, "order", _SIDE_BY_SIDE)
+        elif len(elements) > _LONGEST and shapes[k : k + 2] == [(), ()] and not same:
+            yield here.within(here.node, "elts", swapped, "entries swapped", _SIDE_BY_SIDE)
 
 
 def _like_another(here: Here, rows: Sequence[ast.expr]) -> Iterator[ProgramEdit]:

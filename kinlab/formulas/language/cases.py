@@ -1,0 +1,50 @@
+"""Special cases that are told in front of what holds in general: ``at q2 = 0: g2 = ...``."""
+
+from __future__ import annotations
+
+import re
+
+from kinlab.formulas.language.prose import has_condition
+from kinlab.formulas.typed import begins_with
+
+_ENDS = re.compile(r"\n+|(?<=[\s\w)}\]²³])(?:[;；。]|\.(?=\s))\s*")
+_IN_GENERAL = re.compile(
+    r"\s*(?:and\s+|but\s+|und\s+)?(?:in\s+general|generally|in\s+the\s+general\s+case|for\s+(?:any|all)\s+(?:other\s+)?"
+    r"(?:angles?|states?|q)|otherwise|else|in\s+every\s+other\s+case|(?:im\s+)?allgemein(?:en|er\s+fall)?|sonst|ansonsten"
+    r"|en\s+général|en\s+general|in\s+generale|sinon|altrimenti|一般地|一般情况下?|一般来说|通常|否则)"
+    r"(?:\s+(?:we\s+have|it\s+is|gilt|ist|wird|on\s+a|有))?\s*[,，:：]?\s*",
+    re.IGNORECASE,
+)
+_NAME = re.compile(r"(?:^|(?<=[\s$&:：,，]))\\?[A-Za-zα-ω][^\s=+*/^-]{0,24}(?=\s?&?\s?=(?!=))")
+
+
+def without_special_cases(text: str, entry: str) -> tuple[str, list[str]]:
+    """The text from where it says what holds in general, where special cases stand in front.
+
+    Args:
+        text: as typed.
+        entry: what the formula is asked for.
+
+    Returns:
+        It; and the special cases, each with a condition and an equation for the entry.
+    """
+    pieces, begin = list[tuple[int, int]](), 0
+    for end in _ENDS.finditer(text):
+        pieces.append((begin, end.start()))
+        begin = end.end()
+    pieces.append((begin, len(text)))
+    own = [(start, end) for start, end in pieces if _gives(text[start:end], entry)]
+    if len(own) < 2:
+        return text, []
+    *special, last = own
+    found = _IN_GENERAL.match(text, last[0])
+    cases = [text[start:end].strip() for start, end in special]
+    if found is None or not all(map(has_condition, cases)):
+        return text, []
+    kept = [text[a:b].strip() for a, b in pieces if (a, b) not in special and b <= last[0]]
+    return "\n".join([*filter(None, kept), text[found.end() :]]), cases
+
+
+def _gives(piece: str, entry: str) -> bool:
+    """Whether a sentence has an equation for the entry."""
+    return any(begins_with(f"{name[0]} = 0", entry) for name in _NAME.finditer(piece))
