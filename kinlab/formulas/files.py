@@ -34,7 +34,7 @@ from kinlab.formulas.handed.columns import with_matrices
 from kinlab.formulas.handed.equations import solved
 from kinlab.formulas.handed.rates import MOVING
 from kinlab.formulas.handed.reading import as_formula
-from kinlab.formulas.language.cases import without_special_cases
+from kinlab.formulas.language.cases import without_special_cases, without_words_of_parts
 from kinlab.formulas.language.clauses import Claim, Holds
 from kinlab.formulas.language.derivations import conclusion, steps_beside, values_beside
 from kinlab.formulas.language.prose import (
@@ -221,8 +221,10 @@ def _formula_file(
         plain = ends.get(key, text)
         plain = plain if last is None else without_its_axes(plain, key, last)
         entries[key], remarks[key], told = as_formula(plain, key, at, holds, key in whole)
+        bare = without_words_of_parts(text, key)
+        if key in ends or bare != text:
+            told = doubtful(bare, key)
         if key in ends:
-            told = doubtful(text, key)
             said = _("of the derivation {formula!r} is judged, and no other step")
             end = plain.strip("$")
             end = _EQUATION_BEHIND.split(end)[-1] if say_of_what(text) else end

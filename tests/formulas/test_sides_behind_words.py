@@ -245,6 +245,19 @@ def test_of_a_whole_and_a_part_behind_it_nothing_is_said():
         assert not found.agrees and "c2 should be c12" in found.causes[0].sentence, found
 
 
+def test_words_of_a_part_say_nothing_of_the_whole():
+    part, whole = "Only link 1: M11 = m1*l1^2", f"Both: M11 = {M.replace('2*l1', 'l1')}"
+    found = kl.diagnose("planar2r", "M11", f"{part}\n{whole}")
+    assert not found.agrees and "2*l1*l2*cos(q2)" in found.causes[0].sentence, found
+    for other in (
+        f"Only massless links: M11 = m1*l1^2\n{whole}",
+        f"{whole[6:]}\n{part}",
+        f"At rest, only link 1: tau1 = m1*g*l1*c1\nBoth links: tau1 = {G}",
+    ):
+        with pytest.raises(ExpressionError, match="not read"):
+            kl.diagnose("planar2r", "tau1" if "tau1" in other else "M11", other)
+
+
 ADDED = [
     ("M11 = m1*l1^2\nM11 += {}", "M11"), ("M11 = m1*l1^2;\nM11 = M11 + {};", "M11"), ("M(1,1) = m1*l1^2;\nM(1,1) = M(1,1) + {};", "M11"),
     ("a = m1*l1^2; a += {}; M11 = a", "M11"), ("M11 = m1*l1^2  # first\nM11 += {}  # second", "M11"),

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 
-from kinlab.formulas.language.prose import has_condition
+from kinlab.formulas.language.prose import has_condition, say_of_what
+from kinlab.formulas.language.vocabulary import CHINESE, LATIN, is_of_a_part
 from kinlab.formulas.typed import begins_with
 
 _ENDS = re.compile(r"\n+|(?<=[\s\w)}\]²³])(?:[;；。]|\.(?=\s))\s*")
@@ -43,6 +44,35 @@ def without_special_cases(text: str, entry: str) -> tuple[str, list[str]]:
         return text, []
     kept = [text[a:b].strip() for a, b in pieces if (a, b) not in special and b <= last[0]]
     return "\n".join([*filter(None, kept), text[found.end() :]]), cases
+
+
+def without_words_of_parts(text: str, entry: str) -> str:
+    """The text without what is said in front of the entry's equations for parts of the arm, where
+    the last of its equations has other words in front: ``only link 1: ..., both: ...``.
+
+    Args:
+        text: as typed.
+        entry: what the formula is asked for.
+    """
+    own = [x for x in _NAME.finditer(text) if begins_with(f"{x[0]} = 0", entry)]
+    if len(own) < 2:
+        return text
+    fronts = [_FRONT.search(text[: one.start()]) for one in own]
+    if fronts[-1] is None or not say_of_what(fronts[-1][0]):
+        return text
+    for found in reversed([x for x in fronts[:-1] if x is not None and _is_of_a_part(x[0])]):
+        text = f"{text[: found.start()]}{text[found.end() :]}"
+    return text
+
+
+_FRONT = re.compile(rf"(?:[{LATIN}{CHINESE}\d'’ -]{{2,60}})[:：,，]?\s*$")
+"""The words in front of an equation, on its line."""
+_WORDS = re.compile(rf"[{LATIN}]{{2,}}|[{CHINESE}]+")
+
+
+def _is_of_a_part(front: str) -> bool:
+    """Whether words say that something is of a part, and nothing else."""
+    return all(map(is_of_a_part, _WORDS.findall(front)))
 
 
 def _gives(piece: str, entry: str) -> bool:

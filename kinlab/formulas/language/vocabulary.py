@@ -63,6 +63,13 @@ def leads_over(word: str) -> bool:
     return is_program(word) or word.lower().strip(".") in told or not _not_made_of(word, told)
 
 
+def is_of_a_part(word: str) -> bool:
+    """Whether a word says, with others such, of which part of the arm an equation is."""
+    parts = _lists()["parts"]
+    told = frozenset(f"{parts['words']} {parts['chinese']}".split())
+    return word.lower() in told or not _not_made_of(word, told)
+
+
 def is_listed(word: str) -> bool:
     """Whether a word is in one of the lists, whatever the entry."""
     return word.lower() in _every()
