@@ -319,6 +319,17 @@ def test_a_state_in_a_sentence_explains_no_name():
     assert kl.diagnose("planar2r", "g2", text).agrees
 
 
+@pytest.mark.parametrize("word", ["So", "so", "By this", "We have", "Es ist"])
+def test_the_last_line_is_not_passed_over(word):
+    """Behind a word of two letters it was not seen, and the line above it judged alone."""
+    text = "Rods: I2 + m2*lc2^2 = m2*l2^2/3 and I3 + m3*lc3^2 = m3*l3^2/3."
+    first = "M22 = I2 + m2*lc2^2 + I3 + m3*(l2^2 + lc3^2 + 2*l2*lc3*cos(q3))"
+    wrong = f"{first}\n{text}\n{word} M22 = (m2 + m3)/3*l2^2 + m3*l3^2/3 + m3*l2*l3*cos(q3)"
+    with pytest.raises(ExpressionError):
+        kl.diagnose("planar3r", "M22", wrong)
+    assert kl.diagnose("planar3r", "M22", wrong.replace("(m2 + m3)/3", "(m2/3 + m3)")).agrees
+
+
 def test_what_is_said_of_names_that_the_formula_has_not_is_told():
     right = "x = l1*cos(q1) + l2*cos(q1+q2)"
     for behind, names in (("(a1=l2, a2=l1)", "a1, a2"), ("(and y = l1*cos(q1))", "y")):

@@ -11,10 +11,11 @@ import re
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
+from itertools import pairwise
 
 from kinlab.formulas.language.prose import is_condition
 from kinlab.formulas.language.sentences import is_word
-from kinlab.formulas.language.vocabulary import CHINESE, LATIN, is_linking
+from kinlab.formulas.language.vocabulary import CHINESE, LATIN, is_linking, is_listed
 from kinlab.formulas.typed import (
     begins_with,
     is_name_of,
@@ -47,7 +48,7 @@ _NAMED = re.compile(
     r"\s*:?=(?!=)"
 )
 _OPERATORS = tuple("*/+-^·×=−(")
-_WORD = re.compile(rf"(?<![\\\w])[{LATIN}]{{3,}}$|[{CHINESE}]$")
+_WORD = re.compile(rf"(?<![\\\w])(?P<latin>[{LATIN}]{{2,}})$|[{CHINESE}]$")
 _END = re.compile(
     rf"[;；。，、]|,(?!\d)|\.(?=\s|$)|:(?!=)|[{CHINESE}]|(?<![\\\w])(?P<word>[{LATIN}]{{2,}})(?![\w(])"
     r"|\n(?!\s*(?:[=+*/·]|[-−]\s|\\cdot))"
@@ -57,6 +58,7 @@ _SQUARE = re.compile(r"(?:\^\{?2\}?|²|\*\*2)$")
 _NUMBER = re.compile(r"[\d₀-₉]")
 _OF_LETTERS = re.compile(r"[^\W\d_]{1,8}_?\{?\d.*[^\W\d_]|[*/^+]|\\frac|sin|cos|^[lmIg]_?c?\d")
 _STEPS, _LONGEST = 6, 8000
+_TWO = 2
 _BLANKS = re.compile(r"(?<!\s)\s*\n\s*")
 
 
@@ -88,6 +90,14 @@ def conclusion(text: str, entry: str, last: bool = False) -> str:
     found = _told(text)
     own = [one for one in found if begins_with(f"{one.name} = 0", entry)]
     own = own or [one for one in found if _may_be(one.name) and is_name_of(one.name, entry)]
+    if own and len(own) < _times_given(text, entry):
+        return ""  # one of them was not seen
+    special = [
+        one
+        for before, one in pairwise(found)
+        if one in own and is_condition(f"{before.name} = {before.right}")
+    ]
+    own = [one for one in own if one not in special] or own
     own = own[-1:] if last else own
     formulas = [right for one in own[:-1] if (right := _formula(one.right))]
     formulas += [_formula(one.right, True) for one in own[-1:]]
@@ -108,6 +118,12 @@ def conclusion(text: str, entry: str, last: bool = False) -> str:
     told = "; ".join([*kept, *lines])
     told = f"${told}$" if "\\" in told else told
     return "" if _A_GRID in told else told
+
+
+def _times_given(text: str, entry: str) -> int:
+    """How often the entry's name stands in front of a sign of equality."""
+    plain = _LINES.sub("\n", _GAPS.sub(" ", text))
+    return sum(begins_with(f"{one['name']} = 0", entry) for one in _NAMED.finditer(plain))
 
 
 def _may_be(name: str) -> bool:
@@ -182,11 +198,18 @@ def _equations(text: str) -> Iterator[_Equation]:
         front = text[: found.start()].rstrip(" \t")
         if found.start() < last or (front.endswith(_OPERATORS) and not front.endswith("==")):
             continue
-        if front[-1:] and front[-1] not in "\n,;:.，；：。、" and not _WORD.search(front):
+        if front[-1:] and front[-1] not in "\n,;:.，；：。、）" and not _ends_in_a_word(front):
             continue
         right, last = _right_side(text, found.end())
         if right:
             yield _Equation(found["name"], right)
+
+
+def _ends_in_a_word(front: str) -> bool:
+    """Whether a word stands at the end: of two letters only one of those that are listed."""
+    found = _WORD.search(front)
+    latin = found["latin"] if found else None
+    return found is not None and (latin is None or len(latin) > _TWO or is_listed(latin))
 
 
 def _right_side(text: str, begin: int) -> tuple[str, int]:

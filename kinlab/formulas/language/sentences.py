@@ -403,6 +403,8 @@ def _of_entry(pieces: list[str], entry: str) -> list[str]:
     pieces = [piece.removeprefix("=").strip() for piece in pieces]
     equations = [one for piece in pieces for one in _equations(piece) if _is_equation(one)]
     mine = [one for one in equations if begins_with(_ALIGNED.sub("", one).strip(), entry)]
+    if any(_gives_behind_words(one, entry) for one in equations if one not in mine):
+        return []
     formulas = [one for one in pieces if "=" not in one and _OPERATOR.search(one)]
     if not mine:  # by another of its names
         named = [one for one in equations if is_name_of(one.partition("=")[0], entry)]
@@ -431,6 +433,12 @@ def _of_entry(pieces: list[str], entry: str) -> list[str]:
         used += _plain(" ".join(one.partition("=")[2] for one in more))
         others = [one for one in others if not any(one is known for known in more)]
     return kept
+
+
+def _gives_behind_words(equation: str, entry: str) -> bool:
+    """Whether an equation gives the entry behind words that were not taken out: ``this M22 =``."""
+    words = equation.partition("=")[0].split()
+    return len(words) > 1 and begins_with(f"{words[-1]} = 0", entry)
 
 
 def _explains(equation: str, formulas: list[str]) -> bool:
