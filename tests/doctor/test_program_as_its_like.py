@@ -261,11 +261,43 @@ def f(q):
         T = T @ np.array([[c, -s, 0, a[k]], [s*ca, c*ca, -sa, -d[k]*sa], [s*sa, c*sa, ca, d[k]*ca], [0, 0, 0, 1]])
     return T
 """
+SQUARES = """
+import numpy as np
+CRANK, ROD, HALF = 0.09, 0.09, 0.059
+
+def f(xy):
+    rows = []
+    for base in (HALF, -HALF):
+        dx = base - xy[0]
+        rows.append([2*dx*CRANK, -2*xy[1]*CRANK, ROD**2 - dx**2 - xy[1]**2 - CRANK**2])
+    return np.array(rows)
+"""
+COPIED = """
+import numpy as np
+L = [0.5, 0.4, 0.25]
+
+def f(q, wrench):
+    angle, tip, places = 0.0, np.zeros(3), []
+    for length, turn in zip(L, q):
+        angle, start = angle + turn, tip
+        tip = tip + length*np.array([np.cos(angle), np.sin(angle), 0.0])
+        places.append(start)
+    force, moment, at = wrench[:3], wrench[3:], tip
+    out = np.zeros(3)
+    for k in (2, 1, 0):
+        own = places[k]
+        moment = moment + np.cross(at - own, force)
+        at = own
+        out[k] = moment[2]
+    return out
+"""
 
 
 @pytest.mark.parametrize(
     ("robot", "quantity", "text", "right", "slip"),
     [
+        ("equal_links", "fivebar_equation", SQUARES, "- xy[1]**2 - CRANK**2", "- xy[1]**2"),
+        ("planar3r", "statics", COPIED, "at = own", "at = tip"),
         ("planar3r", "statics", APPENDED, "point - own, force", "point - joints[0][1], force"),
         ("equal_links", "fivebar_angles", SUMS, "cos(turn)*(y - ey) - sin(turn)*(x - ex)", "cos(turn)*(x - ex) - sin(turn)*(y - ey)"),
         ("planar3r", "mass_matrix", STEINER, " + mass*np.sum((centre - joint)**2)", ""),
@@ -283,7 +315,7 @@ def f(q):
         ("planar2r_rods", "inverse_without_gravity", AT_REST, "np.array([0.0, 0.0])", "np.array([0.0, 9.81])"),
         ("stanford", "tip_speed_squared", ONE_KIND, "(0 if slide else qd[k])*z", "qd[k]*z"),
     ],
-    ids=["a name of a loop", "sums", "Steiner", "a long row", "degrees", "kinds", "signs", "a gradient", "uphill", "counterparts", "mixed terms", "halves", "flange", "symbols", "at rest", "one kind"],
+    ids=["a square", "a copy", "a name of a loop", "sums", "Steiner", "a long row", "degrees", "kinds", "signs", "a gradient", "uphill", "counterparts", "mixed terms", "halves", "flange", "symbols", "at rest", "one kind"],
 )  # fmt: skip
 def test_what_is_lacking_is_told_by_its_like(robot, quantity, text, right, slip, tmp_path) -> None:
     if slip:

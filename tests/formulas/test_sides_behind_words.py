@@ -349,3 +349,11 @@ def test_what_a_function_answers_by_the_entry_s_name():
     text = "def kinetic(q2, qd1, qd2):\n    x = l1*cos(q1)\n    x += l2*cos(q1+q2)\n    return x"
     assert kl.diagnose("planar2r", "x", text).agrees
     assert not kl.diagnose("planar2r", "x", text.replace("l2*cos", "l2*sin")).agrees
+
+
+@pytest.mark.parametrize("sign", ["#", "//", "%", "(", ","])
+def test_a_line_ends_behind_a_clause_that_is_true(sign):
+    """The end of the line went with it: ``lc2 = l2/2`` was taken for another side of I2."""
+    lines = f"I2 = m2*l2^2/12   {sign} rod about its centre{')' * (sign == '(')}\nlc2 = l2/2\n"
+    assert kl.diagnose("planar2r_rods", "M22", f"{lines}M22 = I2 + m2*lc2^2").agrees
+    assert not kl.diagnose("planar2r_rods", "M22", f"{lines}M22 = I2 + m2*l2^2").agrees

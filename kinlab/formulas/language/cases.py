@@ -8,6 +8,8 @@ from kinlab.formulas.language.prose import has_condition, say_of_what
 from kinlab.formulas.language.vocabulary import CHINESE, LATIN, is_of_a_part
 from kinlab.formulas.typed import begins_with
 
+_MOST = 60
+"""Signs of equality of a text that is looked through."""
 _ENDS = re.compile(r"\n+|(?<=[\s\w)}\]²³])(?:[;；。]|\.(?=\s))\s*")
 _IN_GENERAL = re.compile(
     r"\s*(?:and\s+|but\s+|und\s+)?(?:in\s+general|generally|in\s+the\s+general\s+case|for\s+(?:any|all)\s+(?:other\s+)?"
@@ -29,6 +31,8 @@ def without_special_cases(text: str, entry: str) -> tuple[str, list[str]]:
     Returns:
         It; and the special cases, each with a condition and an equation for the entry.
     """
+    if text.count("=") > _MOST:
+        return text, []
     pieces, begin = list[tuple[int, int]](), 0
     for end in _ENDS.finditer(text):
         pieces.append((begin, end.start()))
@@ -54,6 +58,8 @@ def without_words_of_parts(text: str, entry: str) -> str:
         text: as typed.
         entry: what the formula is asked for.
     """
+    if text.count("=") > _MOST:
+        return text
     own = [x for x in _NAME.finditer(text) if begins_with(f"{x[0]} = 0", entry)]
     if len(own) < 2:
         return text

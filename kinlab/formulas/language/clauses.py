@@ -436,7 +436,7 @@ def _tidied(text: str) -> str:
         text = re.sub(rf"{_GAP}{then}{_GAP}", _GAP, text)
         text = re.sub(rf"({opens})\s*{_GAP}{then}(?=[^\s{_GAP}])", r"\1 ", text)
     text = re.sub(rf"(?:{opens}|{joins})\s*{_GAP}", _GAP, text)
-    text = re.sub(rf"[(（#]\s*{_GAP}\s*[)）]?", _GAP, text)
+    text = re.sub(rf"(?:[(（#]|//|(?<!\\)%)\s*{_GAP}(?:\s*[)）])?", _GAP, text)
     text = re.sub(rf"^\s*{_GAP}\s*[,;:.，；：。]?", "", text)
     text = re.sub(rf"([.。])\s*{_GAP}\s*[.。]", r"\1", text)  # of a sentence nothing is left
     # of signs on both sides the one behind stays: it cuts what comes from what was before

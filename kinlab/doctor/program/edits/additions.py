@@ -48,6 +48,8 @@ _REST = 1.12
 """Of a length what is behind the centre, l1 - lc1: rather lc1 itself."""
 _NEXT_ANGLE = 1.08
 """Cost of the angle of the joint before, or next, in a sum: c12 for c2."""
+_SQUARES = 1.07
+"""Cost of the square of another constant in a sum of squares."""
 _OF_AN_ANGLE = 0.1
 """What a factor costs more that is an angle: of these sines and cosines are factors."""
 _MIXED = 0.96
@@ -243,6 +245,8 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         yield from _scalars(here, scope, summand or listed or below, operated)
         if scope.root is not None and _has_squares(node):
             yield here.instead(ast.Call(scope.root, [node], []), "function", 1.16)
+        if not summand and _has_squares(node):
+            yield from _another_square(here, scope)
         if isinstance(node, ast.Name) and node.id in scope.arcs and (whole or summand):
             yield from _supplements(here, scope)
         if isinstance(op, ast.Mult) and isinstance(node, ast.Name) and _is_a_share(node, scope):
@@ -642,6 +646,22 @@ def _two_factors(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
             if both and own.isdisjoint(names(piece)):
                 new = ast.BinOp(piece, ast.Mult(), here.node)
                 yield here.instead(new, "missing factor", 1.2)
+
+
+def _another_square(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """The square of another constant beside that of one in a sum: ``rod**2 - crank**2 - x**2``."""
+    squares = [x.left for x in summands(here.node) if isinstance(x, ast.BinOp) and _is_square(x)]
+    known = {text_of(one) for one in squares}
+    if known.isdisjoint(scope.levels):
+        return
+    for name in sorted(scope.levels.keys() - known):
+        square = ast.BinOp(ast.Name(name, ast.Load()), ast.Pow(), number(2))
+        for op in (ast.Sub(), ast.Add()):
+            yield here.instead(ast.BinOp(here.node, op, square), "missing term", _SQUARES)
+
+
+def _is_square(node: ast.BinOp) -> bool:
+    return isinstance(node.op, ast.Pow) and getattr(node.right, "value", 0) == 2
 
 
 def _has_squares(node: ast.expr) -> bool:

@@ -38,6 +38,8 @@ _IDLE = 1.03
 """Cost of a vector, or a matrix, that is set and used nowhere for another: ``force``."""
 _IDLE_NUMBER = 1.06
 """The same of a number that moves: ``w`` of ``w += rate``."""
+_COPIED = 1.15
+"""Cost of another vector for one that is kept under another name: ``last = p``."""
 _IN_LINE = 1.12
 """Cost of a name for another that stands in the same line."""
 
@@ -57,12 +59,13 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
     if node.id in scope.arcs and scope.has_numpy:
         yield here.instead(ast.BinOp(PI, ast.Sub(), node), "argument", 1.12)
     across = Turned(scope.shapes).visit_Name(node).id
+    copied = bool(shape) and isinstance(here.parent, ast.Assign) and here.field == "value"
     for other, known in scope.shapes.items():
         if other != node.id and known == shape and other not in scope.counters:
             near = _alike(other, node.id)
             kind = "index" if near and _letters(other) == _letters(node.id) else "name"
             beside = other in scope.beside.get(node.id, ())
-            cost = 1.1 if near else 1.14 if beside else 1.25
+            cost = 1.1 if near else 1.14 if beside else _COPIED if copied else 1.25
             digits = node.id[len(_letters(node.id)) :]
             cost = _NUMBERED if kind == "index" and len(digits) == 1 else cost
             if cost > _IN_LINE and other in scope.names_in(statement_of(here.above)):
