@@ -124,7 +124,7 @@ def examine_formulas(
     """
     file = as_judged(file, robot)
     parts, unheld = [_examined(file, robot, samples, seed)], list[str]()
-    unknown = file.broken.removeprefix(f"{file.path}: ")
+    unread, unknown = file.broken, file.broken.removeprefix(f"{file.path}: ")
     right = all(one.agrees for one in parts[0])
     if unknown and not all(one.agrees or one.causes for one in parts[0]):
         raise ExpressionError(file.broken)
@@ -132,7 +132,7 @@ def examine_formulas(
         try:
             part = _examined(other, robot, samples, seed)
         except ExpressionError as problem:  # T = T_1 + T_2 = ...
-            unknown = unknown or str(problem).removeprefix(f"{file.path}: ")
+            unread = unread or str(problem)
             continue
         same = all(one.agrees for one in part)
         if other.apart and same and not right:
@@ -143,6 +143,9 @@ def examine_formulas(
             unknown = unknown or _("its names may be of another point, or another link")
         else:
             parts.append(part)
+    if unread and right and not all(one.agrees for part in parts for one in part):
+        raise ExpressionError(unread)  # what was not read may say of what the rest is
+    unknown = unknown or unread.removeprefix(f"{file.path}: ")
     alike = [part for part in parts if len(part) == len(parts[0])]
     told = [_of_chain(list(same)) for same in zip(*alike, strict=True)]
     if unknown:
@@ -649,6 +652,10 @@ def _answers(
         mirrored = {label: formulas[other] for label, other in turned.items() if other in formulas}
         if len({**mirrored, **formulas}) == len(labels):
             formulas = {**mirrored, **formulas}
+    formulas = {
+        label: x.with_what_is_known({*numbers_at(_alone_in(case, label))})
+        for label, x in formulas.items()
+    }
     entries = {label: _entry_of(label, titles) for label in formulas}
     values = {
         label: _values(x, _alone_in(case, label), file, entries[label])

@@ -482,9 +482,6 @@ def sides(text: str, place: str = "expression") -> tuple[str, str]:
     typeset = is_latex(text)
     text = bare(text)
     parts = re.sub(r"&?\s*:?=\s*(?:\{\s*\})?\s*&?", "=", text).split("=")
-    if len(parts) == 2 and _ADDED_TO.search(parts[0]):
-        said = N_("{sign} adds to what is not there; write the whole formula")
-        raise refused(place, said, sign=f"{parts[0].rstrip()[-1]}=")
     if len(parts) > 2 or any(p.rstrip()[-1:] in ("<", ">", "!") for p in parts[:-1]):
         raise refused(
             place,
@@ -503,7 +500,6 @@ def sides(text: str, place: str = "expression") -> tuple[str, str]:
     return left, f"${right}$" if typeset else right
 
 
-_ADDED_TO = re.compile(r"[\w)\]}]\s*[-+*/]\s*$")
 _NAMED_NEXT = r"(?=(?:\\d?dot\s+)?[\\\w{}]{1,40}(?:\(q\)|\^\{?2\}?|\*\*2)?\s*&?\s*:?=)"
 _AND = r"(?:and|和|且)(?=\s)"
 _SPACES = r"\s|~|\\[,;:! ]|\\q?quad(?![A-Za-z])"
@@ -735,7 +731,8 @@ def several(text: str, entry: str) -> dict[str, str]:
             mine, here = _head_and_places(name)
             if not here and any({head, mine} <= group for group in _MEANT):
                 return {}  # the whole itself
-            if here and any({head, mine} <= group for group in _MEANT):
+            own_letter = head == mine or entry not in _ONE_NUMBER  # h1 beside V is a height
+            if here and own_letter and any({head, mine} <= group for group in _MEANT):
                 short = name.partition("[")[0]
                 named[name if short in (name, *LONG) else f"{short}{here}"] = line
             else:

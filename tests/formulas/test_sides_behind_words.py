@@ -345,6 +345,39 @@ def test_a_name_that_lacks_a_place_is_none(name):
         kl.diagnose("planar2r", "J12", f"{name} = -l2*sin(q1+q2)")
 
 
+@pytest.mark.parametrize(
+    ("robot", "entry", "text"),
+    [
+        ("planar2r", "M11", f"first link: M11 = m1*l1^2   # link 2\nboth: M11 = {M}"),
+        ("planar2r", "M11", f"first link: M11 = m1*l1^2 % masses in kg\nboth: M11 = {M}"),
+        ("planar2r", "x", "x = l1*cos(q1) (rods)\nx = x + l2*cos(q1+q2)"),
+        ("planar2r", "V", "h1 = l1*sin(q1) and h2 = h1 + l2*sin(q1+q2)\n1) V = m1*g*h1 + m2*g*h2"),
+    ],
+)
+def test_what_stands_beside_a_line_ends_with_it(robot, entry, text):
+    """Each was called wrong: what was left of a comment took the lines behind it along."""
+    found = kl.diagnose(robot, entry, text)
+    assert found.agrees and found.function == entry, found
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "x = l1*cos(q1) at first\nx += l2*cos(q1+q2)", "x = l1*cos(q1)\nDaraus folgt x += l2*cos(q1+q2)",
+        "x = l1*cos(q1) we start\nx = x + l2*cos(q1+q2)",
+        "x = l1*c1 + l2*c12\n- With l1 = 0.5 m and l2 = 0.4 m this is\nx = 0.5*c1 + 0.4*c12",
+    ],
+)  # fmt: skip
+def test_what_cannot_be_read_surely_is_refused(text):
+    with pytest.raises(ExpressionError):
+        kl.diagnose("planar2r", "x", text)
+
+
+def test_a_dash_before_a_greek_name_is_refused_too():
+    with pytest.raises(ExpressionError, match="dash"):
+        kl.diagnose("planar3r", "phi", "- φ = θ1+θ2+θ3")
+
+
 def test_what_a_function_answers_by_the_entry_s_name():
     text = "def kinetic(q2, qd1, qd2):\n    x = l1*cos(q1)\n    x += l2*cos(q1+q2)\n    return x"
     assert kl.diagnose("planar2r", "x", text).agrees

@@ -199,6 +199,17 @@ class Written:
         met -= {"pi", *self.symbols, *_called(self._trees.values())}
         return sorted(name for name in met if not tree.names(canonical(name)) <= names)
 
+    def with_what_is_known(self, names: set[str]) -> Written:
+        """The same without definitions that it does not use and that have names without a value.
+
+        Args:
+            names: the robot's, as for :meth:`foreign`.
+        """
+        unused = [name for name in self.symbols if name not in self._used]
+        strange = {x for x in unused if replace(self, text=x, typing=None).foreign(names)}
+        kept = {name: text for name, text in self.symbols.items() if name not in strange}
+        return replace(self, symbols=kept) if strange else self
+
     @property
     def spelled(self) -> dict[str, str]:
         """How the writer spells the robot's names, where otherwise: ``l1`` is ``L``."""

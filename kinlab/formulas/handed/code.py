@@ -13,9 +13,12 @@ from kinlab.formulas.language.vocabulary import (
     LATIN,
     STEPS,
     chinese_left,
+    is_listed,
     says_nothing,
 )
 from kinlab.formulas.signs.brackets import closes, outside, parts_at
+from kinlab.formulas.signs.refusals import refused
+from kinlab.host.language import N_
 
 _FENCE = re.compile(r"^\s*```[\w+-]*\s*\n(.*?)\n?\s*```\s*$", re.DOTALL)
 _TICKS = re.compile(r"^\s*`([^`]+)`\s*[.;]?\s*$")
@@ -59,6 +62,7 @@ _SUMS = re.compile(r"(?<![\w.])(?:np\.|numpy\.)?(?:linalg\.)?(dot|sum|norm)\s*\(
 _HYPOT = re.compile(r"(?<![\w.])(?:(?:np|numpy|math)\.)?hypot\s*\(")
 _NUMBERED = re.compile(
     r"^\s*(?:\(\s*\d+(?:[.-]\d+)?[a-z]?\s*\)|\d+[.)])\s*(?=[\\A-Za-zα-ω][^=\n]{0,30}=)"
+    r"|(?<=\n)[ \t]*\d+[.)][ \t]+(?=[\\A-Za-zα-ω][^=\n]{0,30}=)"
 )
 _SQUARE = re.compile(r"(?:^|[-+*/^=(\[ ]|(?<![\w.])\d)\[(?=[^\[\]]{3})")
 _ANY_SQUARE = re.compile(r"\[(?=[^\[\]]{3})")
@@ -172,21 +176,30 @@ def _is_of_a_part(comment: str) -> bool:
 _ADDED = r"[A-Za-z]\w*(?:\[[\d, ]+\]|\([\d, ]+\))?"
 _ADDS = re.compile(rf"({_ADDED})\s*(?:([-+])=|=\s*\1(?![\w\[(])\s*([-+]))\s*(\S[^=]*)")
 """What is added to a name that has a value: ``M11 += b``, ``M11 = M11 + b``."""
-_BEHIND = re.compile(r"(?:^|[ \t]+)(?:%|#|//)[^\n]*$")
-"""A comment at a line's end."""
+_BEHIND = re.compile(
+    r"(?:^|[ \t]+)(?:%|#|//)[^\n]*$|[ \t]+\([^()=*/^+\n]*[^\W\d_]{3}[^()=*/^+\n]*\)$"
+)
+"""A comment at a line's end, or words in parentheses."""
 _A_VALUE = re.compile(rf"({_ADDED})\s*=\s*(\S[^=]*)")
 
 
-def added_up(text: str) -> str:
+def added_up(text: str, place: str) -> str:
     """``M11 = a; M11 += b`` as ``M11 = a + (b)``; what is added to nothing stays as it is.
 
     What comments say of the parts, ``# link 2``, is left out.
 
     Args:
         text: as typed.
+        place: what to put in front of a message.
+
+    Raises:
+        ExpressionError: ``M11 += b`` without what it adds to.
     """
     parts = [(_BEHIND.sub("", one), _BEHIND.search(one)) for one in parts_at(text, ";\n")]
-    if not any(_ADDS.fullmatch(one) for one, _comment in parts):
+    adding = [one for one, _comment in parts if _ADDS.fullmatch(one)]
+    given = [one for one, _comment in parts if _A_VALUE.fullmatch(one)]
+    if not adding or any(map(is_listed, _COMMENT_WORDS.findall(" ".join([*given, *adding])))):
+        _refuse_additions(text, place)
         return text
     sums: dict[str, str] = {}
     made: list[str] = []
@@ -204,7 +217,19 @@ def added_up(text: str) -> str:
             made += [one] if one else []
             continue
         made.append(f"{name} = {sums[name]}")
-    return "\n".join(made)
+    whole = "\n".join(made)
+    _refuse_additions(whole, place)
+    return whole
+
+
+_ADDITION = re.compile(rf"(?<![\w.\\]){_ADDED}[ \t]*([-+])=(?!=)")
+
+
+def _refuse_additions(text: str, place: str) -> None:
+    """Refuses what is added to a name that has no value, or one with words behind it."""
+    if found := _ADDITION.search(text):
+        said = N_("{sign} adds to what is not there; write the whole formula")
+        raise refused(place, said, sign=f"{found[1]}=")
 
 
 def _rows_together(text: str) -> str:

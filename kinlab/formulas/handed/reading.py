@@ -215,7 +215,8 @@ def as_formula(
     unjudged = _("the step {words!r} was not judged")
     steps = [unjudged.format(words=one[0].strip("=& ")) for one in STEP.finditer(text)]
     text, label = _without_label(_MIRRORED.sub("", _as_asked(_unlisted(of_packages(text)), entry)))
-    text = _HENCE.sub("\n", added_up(without_prompts(without_gaps(_OF_PLACE.sub(r"\1\2", text)))))
+    text = without_prompts(without_gaps(_OF_PLACE.sub(r"\1\2", text)))
+    text = _HENCE.sub("\n", added_up(text, place))
     text = _BOLD_SIDES.sub(lambda found: found[1] or f" {found[2]}", text)
     text = _BULLET.sub("", text)
     text = written_out(with_definitions(text), place)

@@ -26,7 +26,9 @@ from kinlab.formulas.typed import (
     stands_in,
 )
 
-_PROGRAM = re.compile(r"\bdef\b|\blambda\b|\breturn\b|\[\[|\w\s?[-+*/]=")
+_PROGRAM = re.compile(
+    r"\bdef\b|\blambda\b|\breturn\b|\[\[|\w\s?[-+*/]=|(?<!\w)([A-Za-z]\w*)\s?=\s?\1\s?[-+]"
+)
 _GRID = re.compile(r"\\begin\{(\w*(?:matrix|array|cases)\*?)\}.{0,2000}?\\end\{\1\}", re.DOTALL)
 """A matrix, which is no entry."""
 _A_GRID = "\0"
@@ -50,10 +52,12 @@ _NAMED = re.compile(
 _OPERATORS = tuple("*/+-^·×=−(")
 _WORD = re.compile(rf"(?<![\\\w])(?P<latin>[{LATIN}]{{2,}})$|[{CHINESE}]$")
 _END = re.compile(
-    rf"[;；。，、]|,(?!\d)|\.(?=\s|$)|:(?!=)|[{CHINESE}]|(?<![\\\w])(?P<word>[{LATIN}]{{2,}})(?![\w(])"
+    rf"[;；。，、]|#|//|(?<!\\)%|,(?!\d)|\.(?=\s|$)|:(?!=)|[{CHINESE}]|(?<![\\\w])(?P<word>[{LATIN}]{{2,}})(?![\w(])"
     r"|\n(?!\s*(?:[=+*/·]|[-−]\s|\\cdot))"
 )
 """What ends a formula, outside of brackets; a word where it is none of a formula."""
+_OF_A_LINE = ("\n", "#", "//", "%")
+"""What ends a formula whatever is behind it: a line's end, a comment."""
 _SQUARE = re.compile(r"(?:\^\{?2\}?|²|\*\*2)$")
 _NUMBER = re.compile(r"[\d₀-₉]")
 _OF_LETTERS = re.compile(r"[^\W\d_]{1,8}_?\{?\d.*[^\W\d_]|[*/^+]|\\frac|sin|cos|^[lmIg]_?c?\d")
@@ -222,7 +226,7 @@ def _right_side(text: str, begin: int) -> tuple[str, int]:
         if depth > 0 or not inside.strip() or (word and not is_word(word, text, one)):
             continue
         end = one.start()
-        if _GOES_ON.match(text, one.end()) and one[0] != "\n" and not word:
+        if _GOES_ON.match(text, one.end()) and one[0] not in _OF_A_LINE and not word:
             raise _UnsureError
         break
     return " ".join(text[begin:end].split()), end

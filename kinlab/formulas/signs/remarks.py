@@ -54,7 +54,7 @@ _MAY_BE_FACTORS = (
     ),
 )
 """The same close behind; ``q (2)`` is an index."""
-_NAME_AHEAD = r"(?=[$\\]{0,3}[A-Za-zτθ][\w{}\\,]{0,20}(?:\([\w,\s]{0,20}\))?\s*=)"
+_NAME_AHEAD = r"(?=[$\\]{0,3}[A-Za-zα-ωΑ-Ωϑϕ][\w{}\\,]{0,20}(?:\([\w,\s]{0,20}\))?\s*=)"
 _OF_ITEM = re.compile(rf"(?m)^[ \t]*(?:[①-⒇]|\([a-h]\)|[*•–—])[ \t]+{_NAME_AHEAD}")
 _DISPLAY = re.compile(r"(?<!\\)\\[\[(\])]")
 _DASH = re.compile(rf"[ \t]*-[ \t]+{_NAME_AHEAD}")
