@@ -373,6 +373,11 @@ def test_what_cannot_be_read_surely_is_refused(text):
         kl.diagnose("planar2r", "x", text)
 
 
+def test_a_definition_whose_name_is_of_two_words():
+    """It ended in a SyntaxError: the name was read as a formula."""
+    assert kl.diagnose("planar2r", "M22", "det J = l1*l2*s2\nM22 = m2*l2^2").agrees
+
+
 def test_a_dash_before_a_greek_name_is_refused_too():
     with pytest.raises(ExpressionError, match="dash"):
         kl.diagnose("planar3r", "phi", "- φ = θ1+θ2+θ3")

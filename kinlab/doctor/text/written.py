@@ -206,7 +206,8 @@ class Written:
             names: the robot's, as for :meth:`foreign`.
         """
         unused = [name for name in self.symbols if name not in self._used]
-        strange = {x for x in unused if replace(self, text=x, typing=None).foreign(names)}
+        told = {name: replace(self, text=self.symbols[name], typing=None) for name in unused}
+        strange = {name for name, definition in told.items() if definition.foreign(names)}
         kept = {name: text for name, text in self.symbols.items() if name not in strange}
         return replace(self, symbols=kept) if strange else self
 
