@@ -373,6 +373,18 @@ def test_what_cannot_be_read_surely_is_refused(text):
         kl.diagnose("planar2r", "x", text)
 
 
+@pytest.mark.parametrize(
+    "comment", ["in mm", "position of the centre of mass of link 2", "at rest"]
+)
+@pytest.mark.parametrize("sign", ["#", "//"])
+def test_a_comment_that_says_more_than_the_part_is_told(comment, sign):
+    """With the part's it was left out, and the sum agreed without a word."""
+    text = "x = l1*c1\nx += l2*c12"
+    (remark,) = kl.diagnose("planar2r", "x", f"{text}  {sign} {comment}").remarks
+    assert f"{comment}' beside the formula were not read" in remark
+    assert kl.diagnose("planar2r", "x", f"{text}  {sign} link 2").remarks == ()
+
+
 def test_a_definition_whose_name_is_of_two_words():
     """It ended in a SyntaxError: the name was read as a formula."""
     assert kl.diagnose("planar2r", "M22", "det J = l1*l2*s2\nM22 = m2*l2^2").agrees

@@ -8,14 +8,7 @@ from __future__ import annotations
 import re
 from itertools import islice
 
-from kinlab.formulas.language.vocabulary import (
-    CHINESE,
-    LATIN,
-    STEPS,
-    chinese_left,
-    is_listed,
-    says_nothing,
-)
+from kinlab.formulas.language.vocabulary import is_listed, is_of_a_part, words_of
 from kinlab.formulas.signs.brackets import closes, outside, parts_at
 from kinlab.formulas.signs.refusals import refused
 from kinlab.host.language import N_
@@ -163,14 +156,9 @@ def with_definitions(text: str) -> str:
     return "; ".join([*made, other.strip()]) if made else text
 
 
-_COMMENT_WORDS = re.compile(rf"[{LATIN}]{{2,}}|[{CHINESE}]+")
-
-
 def _is_of_a_part(comment: str) -> bool:
-    """Whether a comment has no words but those of steps and parts."""
-    plain = not re.search("[=<>*^]", comment)
-    words = _COMMENT_WORDS.findall(comment)
-    return plain and all(says_nothing(x, STEPS) or not chinese_left(x, STEPS) for x in words)
+    """Whether a comment says of which part of the arm a line is, and nothing else."""
+    return not re.search("[=<>*^]", comment) and all(map(is_of_a_part, words_of(comment)))
 
 
 _ADDED = r"[A-Za-z]\w*(?:\[[\d, ]+\]|\([\d, ]+\))?"
@@ -198,7 +186,7 @@ def added_up(text: str, place: str) -> str:
     parts = [(_BEHIND.sub("", one), _BEHIND.search(one)) for one in parts_at(text, ";\n")]
     adding = [one for one, _comment in parts if _ADDS.fullmatch(one)]
     given = [one for one, _comment in parts if _A_VALUE.fullmatch(one)]
-    if not adding or any(map(is_listed, _COMMENT_WORDS.findall(" ".join([*given, *adding])))):
+    if not adding or any(map(is_listed, words_of(" ".join([*given, *adding])))):
         _refuse_additions(text, place)
         return text
     sums: dict[str, str] = {}

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import re
 
-from kinlab.formulas.language.prose import has_condition, say_of_what
-from kinlab.formulas.language.vocabulary import CHINESE, LATIN, is_of_a_part
-from kinlab.formulas.typed import begins_with
+from kinlab.formulas.language.prose import equations_of, has_condition, say_of_what
+from kinlab.formulas.language.vocabulary import CHINESE, LATIN, is_of_a_part, words_of
 
 _MOST = 60
 """Signs of equality of a text that is looked through."""
@@ -18,7 +17,6 @@ _IN_GENERAL = re.compile(
     r"(?:\s+(?:we\s+have|it\s+is|gilt|ist|wird|on\s+a|有))?\s*[,，:：]?\s*",
     re.IGNORECASE,
 )
-_NAME = re.compile(r"(?:^|(?<=[\s$&:：,，]))\\?[A-Za-zα-ω][^\s=+*/^-]{0,24}(?=\s?&?\s?=(?!=))")
 
 
 def without_special_cases(text: str, entry: str) -> tuple[str, list[str]]:
@@ -31,14 +29,14 @@ def without_special_cases(text: str, entry: str) -> tuple[str, list[str]]:
     Returns:
         It; and the special cases, each with a condition and an equation for the entry.
     """
-    if text.count("=") > _MOST:
+    if not 2 <= text.count("=") <= _MOST:
         return text, []
     pieces, begin = list[tuple[int, int]](), 0
     for end in _ENDS.finditer(text):
         pieces.append((begin, end.start()))
         begin = end.end()
     pieces.append((begin, len(text)))
-    own = [(start, end) for start, end in pieces if _gives(text[start:end], entry)]
+    own = [(start, end) for start, end in pieces if equations_of(text[start:end], entry)]
     if len(own) < 2:
         return text, []
     *special, last = own
@@ -60,27 +58,17 @@ def without_words_of_parts(text: str, entry: str) -> str:
     """
     if text.count("=") > _MOST:
         return text
-    own = [x for x in _NAME.finditer(text) if begins_with(f"{x[0]} = 0", entry)]
+    own = equations_of(text, entry)
     if len(own) < 2:
         return text
     fronts = [_FRONT.search(text[: one.start()]) for one in own]
     if fronts[-1] is None or not say_of_what(fronts[-1][0]):
         return text
-    for found in reversed([x for x in fronts[:-1] if x is not None and _is_of_a_part(x[0])]):
+    of_parts = [x for x in fronts[:-1] if x is not None and all(map(is_of_a_part, words_of(x[0])))]
+    for found in reversed(of_parts):
         text = f"{text[: found.start()]}{text[found.end() :]}"
     return text
 
 
 _FRONT = re.compile(rf"(?:[{LATIN}{CHINESE}\d'’ -]{{2,60}})[:：,，]?\s*$")
 """The words in front of an equation, on its line."""
-_WORDS = re.compile(rf"[{LATIN}]{{2,}}|[{CHINESE}]+")
-
-
-def _is_of_a_part(front: str) -> bool:
-    """Whether words say that something is of a part, and nothing else."""
-    return all(map(is_of_a_part, _WORDS.findall(front)))
-
-
-def _gives(piece: str, entry: str) -> bool:
-    """Whether a sentence has an equation for the entry."""
-    return any(begins_with(f"{name[0]} = 0", entry) for name in _NAME.finditer(piece))

@@ -237,8 +237,7 @@ def own_sentence(text: str, entry: str) -> int:
         text: as typed.
         entry: what it is asked for.
     """
-    named = (x for x in _LEFT_SIDE.finditer(text) if begins_with(f"{x['name']} = 0", entry))
-    last = max((found.start("name") for found in named), default=0)
+    last = max((found.start() for found in equations_of(text, entry)), default=0)
     ends = [found.end() for found in _SENTENCE_ENDS.finditer(text, 0, last)]
     while ends and not re.search(rf"=|[{LATIN}]{{2,}}|[{CHINESE}]", text[ends[-1] : last]):
         last = ends.pop()  # what leads over to the equation stands on a line above
@@ -253,8 +252,18 @@ def behind_the_first(text: str, entry: str) -> str:
         text: as typed.
         entry: what it is asked for.
     """
-    named = (x for x in _LEFT_SIDE.finditer(text) if begins_with(f"{x['name']} = 0", entry))
-    return text[min((found.end() for found in named), default=0) :]
+    return text[min((found.end() for found in equations_of(text, entry)), default=0) :]
+
+
+def equations_of(text: str, entry: str) -> list[re.Match[str]]:
+    """Where equations for an entry begin, each with its name and its sign of equality.
+
+    Args:
+        text: as typed.
+        entry: what it is asked for.
+    """
+    found = _LEFT_SIDE.finditer(text)
+    return [one for one in found if begins_with(f"{one['name']} = 0", entry)]
 
 
 _LEFT_SIDE = re.compile(

@@ -16,6 +16,11 @@ CHINESE = "\u4e00-\u9fff\u3040-\u30fa\u30fc-\u30ff"
 CYRILLIC = "\u0400-\u04ff"
 LATIN = f"A-Za-zÀ-ÖÙ-öù-ÿąčćďěęłńňřšśťůžźőűİıŞşĞğ{CYRILLIC}"
 """Letters of words, for patterns; without those that are signs of mathematics (ø, ż)."""
+ASIDE = (
+    rf"(?<=[\w)}}\]])\s{{1,4}}\((?:[{LATIN}]{{2,20}}[ ,]{{1,2}}){{2,8}}(?:[{LATIN}]{{2,20}}|\d)\)"
+)
+"""Words in parentheses behind a formula, for patterns: ``(reach beyond joint 2)``."""
+_A_WORD = re.compile(rf"[{LATIN}]{{2,}}|[{CHINESE}]+")
 BEHIND = "behind"
 """In an entry's place: what is said of the names in a formula."""
 STEPS = "steps"
@@ -23,6 +28,11 @@ STEPS = "steps"
 
 _LONGEST = 8
 """Signs of the longest Chinese word."""
+
+
+def words_of(text: str) -> list[str]:
+    """The words of a text, of two letters at least, and its runs of Chinese."""
+    return _A_WORD.findall(text)
 
 
 def says_nothing(word: str, entry: str) -> bool:
@@ -53,21 +63,22 @@ def _not_made_of(text: str, told: frozenset[str]) -> str:
 
 def is_linking(word: str) -> bool:
     """Whether a word stands between two sides of one equation: ``a, that is = b``."""
-    told = _linking()
+    return _is_one_of(word, _linking())
+
+
+def _is_one_of(word: str, told: frozenset[str]) -> bool:
+    """Whether a word, or a run of Chinese, is made of what a list has."""
     return word.lower().strip(".") in told or not _not_made_of(word, told)
 
 
 def leads_over(word: str) -> bool:
     """Whether a word leads from one equation to the next, and says nothing of what they are."""
-    told = _leading()
-    return is_program(word) or word.lower().strip(".") in told or not _not_made_of(word, told)
+    return is_program(word) or _is_one_of(word, _leading())
 
 
 def is_of_a_part(word: str) -> bool:
     """Whether a word says, with others such, of which part of the arm an equation is."""
-    parts = _lists()["parts"]
-    told = frozenset(f"{parts['words']} {parts['chinese']}".split())
-    return word.lower() in told or not _not_made_of(word, told)
+    return _is_one_of(word, _parts())
 
 
 def is_listed(word: str) -> bool:
@@ -95,6 +106,12 @@ def _linking() -> frozenset[str]:
 @cache
 def _leading() -> frozenset[str]:
     return _linking().union(_lists()["anywhere"]["leading"].split())
+
+
+@cache
+def _parts() -> frozenset[str]:
+    parts = _lists()["parts"]
+    return frozenset(f"{parts['words']} {parts['chinese']}".split())
 
 
 @cache
