@@ -124,9 +124,9 @@ def examine_formulas(
     """
     file = as_judged(file, robot)
     parts, unheld = [_examined(file, robot, samples, seed)], list[str]()
-    unread, unknown = file.broken, file.broken.removeprefix(f"{file.path}: ")
+    unread, unsure = file.broken, ""
     right = all(one.agrees for one in parts[0])
-    if unknown and not all(one.agrees or one.causes for one in parts[0]):
+    if unread and not all(one.agrees or one.causes for one in parts[0]):
         raise ExpressionError(file.broken)
     for other in file.others:
         try:
@@ -138,14 +138,14 @@ def examine_formulas(
         if other.apart and same and not right:
             return [_given_twice(one) for one in parts[0]]
         if other.line and right and not same:
-            unheld += [shown_formula(other.line)]
+            unheld += [other.line]
         elif right and _may_mean_another(other, file) and not same:
-            unknown = unknown or _("its names may be of another point, or another link")
+            unsure = unsure or _("its names may be of another point, or another link")
         else:
             parts.append(part)
     if unread and right and not all(one.agrees for part in parts for one in part):
         raise ExpressionError(unread)  # what was not read may say of what the rest is
-    unknown = unknown or unread.removeprefix(f"{file.path}: ")
+    unknown = (file.broken or unsure or unread).removeprefix(f"{file.path}: ")
     alike = [part for part in parts if len(part) == len(parts[0])]
     told = [_of_chain(list(same)) for same in zip(*alike, strict=True)]
     if unknown:
@@ -156,19 +156,6 @@ def examine_formulas(
         told = [replace(one, remarks=(*one.remarks, said.format(line=line))) for one in told]
     told = [_with_remarks(one, file.remarks) for one in told] if file.remarks else told
     return [_judged_with(one, file) for one in told] if file.unread else told
-
-
-_SHOWN = 60
-"""Signs of a formula in a remark."""
-
-
-def shown_formula(text: str) -> str:
-    """A formula in a remark: its beginning.
-
-    Args:
-        text: as typed.
-    """
-    return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."
 
 
 def _given_twice(found: Diagnosis) -> Diagnosis:
@@ -653,7 +640,7 @@ def _answers(
         if len({**mirrored, **formulas}) == len(labels):
             formulas = {**mirrored, **formulas}
     formulas = {
-        label: x.with_what_is_known({*numbers_at(_alone_in(case, label))})
+        label: x.with_what_is_known({*numbers_at(_alone_in(case, label))}) if x.symbols else x
         for label, x in formulas.items()
     }
     entries = {label: _entry_of(label, titles) for label in formulas}

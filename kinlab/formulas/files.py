@@ -285,7 +285,7 @@ def _formula_file(
     entries = {key: solved(value, key, f"{place}: {key}") for key, value in entries.items()}
     chains = {key: typed.readings(value, key, explained) for key, value in entries.items()}
     sides = [(key, part, "", False) for key, parts in chains.items() for part in parts[1:]]
-    for key, lines in before.items():
+    for key, lines in ((key, lines) for key, lines in before.items() if lines):
         lines = [solved(line, key, f"{place}: {key}") for line in lines]
         sides += _sides_before(lines, key, doubts[key][0], explained)
     entries = {key: parts[0] for key, parts in chains.items()}
@@ -348,7 +348,11 @@ def _sides_before(
     of_a_part, behind = say_of_what(text), say_of_what(behind_the_first(text, key))
     for line in reversed(lines):
         for part in typed.readings(line, key, explained):
-            yield key, part, line.strip("$") if of_a_part else "", behind
+            yield key, part, _beginning(line.strip("$")) if of_a_part else "", behind
+
+
+def _beginning(text: str) -> str:
+    return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."
 
 
 _STATIC = re.compile(r"(?:tau|u|Q)g?(\d?)")

@@ -555,7 +555,8 @@ def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
     return formulas, f"{dollars}{lines[-1]}{dollars}"
 
 
-def _in_order(text: str, entry: str) -> tuple[list[str], set[str]]:
+@lru_cache(maxsize=16)
+def _in_order(text: str, entry: str) -> tuple[tuple[str, ...], frozenset[str]]:
     """The equations of a text, the one that is meant last; and those that give the entry."""
     lines, writing = _equations(text), hand([text])
     gives = {
@@ -567,7 +568,7 @@ def _in_order(text: str, entry: str) -> tuple[list[str], set[str]]:
     lines.sort(key=lambda line: (line in gives, "=" not in line))
     if lines and lines[-1] not in gives and "=" in lines[-1]:
         lines = sorted(lines, key=lambda line: not explains_another(line, lines))
-    return lines, gives
+    return (*lines,), frozenset(gives)
 
 
 def lines_before(text: str, entry: str, given: Container[str]) -> list[str]:

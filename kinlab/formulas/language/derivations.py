@@ -15,7 +15,7 @@ from itertools import pairwise
 
 from kinlab.formulas.language.prose import is_condition
 from kinlab.formulas.language.sentences import is_word
-from kinlab.formulas.language.vocabulary import CHINESE, LATIN, is_linking, is_listed
+from kinlab.formulas.language.vocabulary import ASIDE, CHINESE, LATIN, is_linking, is_listed
 from kinlab.formulas.typed import (
     begins_with,
     is_name_of,
@@ -37,7 +37,7 @@ _LINES = re.compile(
     r"|\\(?:Rightarrow|Longrightarrow|implies|therefore|Leftrightarrow|iff)(?![A-Za-z])"
     r"|(?<![<>=])=>|[⇒⟹→⟶∴⇔]|\\text\w*\s*\{[^{}]*\}"
     r"|(?<=[\w)}\]])\s{1,4}\((?=(?:and|und|et|where|with|和|且)[\s\\$]|\w{1,6}\s?=)"
-    rf"|(?<=[\w)}}\]])\s{{1,4}}\((?:[{LATIN}]{{2,20}}[ ,]{{1,2}}){{2,8}}(?:[{LATIN}]{{2,20}}|\d)\)"
+    rf"|{ASIDE}"
 )
 """Where one step ends and another begins; words in LaTeX."""
 _GAPS = re.compile(r"\\[,;:! ]")
@@ -79,6 +79,15 @@ class _Equation:
     name: str
     right: str
 
+    @property
+    def text(self) -> str:
+        return f"{self.name} = {self.right}"
+
+    @property
+    def is_state(self) -> bool:
+        """Whether it says when something holds: ``q2 = 0``."""
+        return is_condition(self.text)
+
 
 def conclusion(text: str, entry: str, last: bool = False) -> str:
     """The equations of the entry in a text of several steps, and what explains them.
@@ -96,25 +105,17 @@ def conclusion(text: str, entry: str, last: bool = False) -> str:
     own = own or [one for one in found if _may_be(one.name) and is_name_of(one.name, entry)]
     if own and len(own) < _times_given(text, entry):
         return ""  # one of them was not seen
-    special = [
-        one
-        for before, one in pairwise(found)
-        if one in own and is_condition(f"{before.name} = {before.right}")
-    ]
+    special = [one for before, one in pairwise(found) if before.is_state]
     own = [one for one in own if one not in special] or own
     own = own[-1:] if last else own
     formulas = [right for one in own[:-1] if (right := _formula(one.right))]
     formulas += [_formula(one.right, True) for one in own[-1:]]
     if not formulas or text.count("=") < 2 + own[-1].right.count("=") or len(formulas) > _STEPS:
         return ""
-    others = {
-        own_name(one.name): one
-        for one in found
-        if one.name != own[-1].name and not is_condition(f"{one.name} = {one.right}")
-    }
     name, steps = own[-1].name, [*dict.fromkeys(formulas)]
+    others = {own_name(one.name): one for one in found if one.name != name and not one.is_state}
     chain = " = ".join([name, *steps])
-    kept = [f"{one.name} = {one.right}" for one in _explaining(chain, others)]
+    kept = [one.text for one in _explaining(chain, others)]
     if any(_SQUARE.search(one.name) and f"{one.name} =" not in "".join(kept) for one in found):
         return ""  # what is explained is a square, and none stands in the formula
     named = begins_with(f"{name} = 0", entry)
@@ -126,8 +127,8 @@ def conclusion(text: str, entry: str, last: bool = False) -> str:
 
 def _times_given(text: str, entry: str) -> int:
     """How often the entry's name stands in front of a sign of equality."""
-    plain = _LINES.sub("\n", _GAPS.sub(" ", text))
-    return sum(begins_with(f"{one['name']} = 0", entry) for one in _NAMED.finditer(plain))
+    names = (one["name"] for one in _NAMED.finditer(_in_lines(text)))
+    return sum(begins_with(f"{name} = 0", entry) for name in names)
 
 
 def _may_be(name: str) -> bool:
@@ -179,8 +180,12 @@ def _told(text: str) -> list[_Equation]:
 
 
 def _all(text: str) -> list[_Equation]:
-    text = _BLANKS.sub("\n", _GRID.sub(_A_GRID, text))
-    return [*_equations(_LINES.sub("\n", _GAPS.sub(" ", text)))]
+    return [*_equations(_in_lines(_BLANKS.sub("\n", _GRID.sub(_A_GRID, text))))]
+
+
+def _in_lines(text: str) -> str:
+    """A text with each of its steps on a line of its own."""
+    return _LINES.sub("\n", _GAPS.sub(" ", text))
 
 
 def _formula(right: str, last: bool = False) -> str:

@@ -11,6 +11,7 @@ import re
 
 from kinlab.formulas.language.prose import MATHS, is_condition
 from kinlab.formulas.language.vocabulary import (
+    ASIDE,
     CHINESE,
     LATIN,
     is_linking,
@@ -49,7 +50,7 @@ _COMMENT = re.compile(r"(?<!\\)(?<![\d ] )(?:^|(?<=[\s;]))%[^\n=]*$", re.MULTILI
 _ABOUT = re.compile(
     rf"(?<![\w*/^+=-])[xyz]-(?=(?:coordinate|component|position|koordinate|komponente)[{LATIN}]*)"
     r"|[(（]\s*(?:units?|einheit(?:en)?|单位)\s*[:：]?\s*(?:kg|rad|Nm|N|m|J|s|SI)(?![A-Za-z])[\s/^0-9*·kgNmJsrad,，、]{0,8}[)）]"
-    rf"|(?<=[\w)}}\]])\s{{1,4}}\((?:[{LATIN}]{{2,20}}[ ,]{{1,2}}){{2,8}}(?:[{LATIN}]{{2,20}}|\d)\)",
+    rf"|{ASIDE}",
     re.IGNORECASE,
 )
 """Letters that are part of a word, a unit in parentheses, and words in parentheses."""

@@ -243,9 +243,10 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         yield from _signs(here, scope)
     if shape == ():
         yield from _scalars(here, scope, summand or listed or below, operated)
-        if scope.root is not None and _has_squares(node):
+        squares = _has_squares(node)
+        if scope.root is not None and squares:
             yield here.instead(ast.Call(scope.root, [node], []), "function", 1.16)
-        if not summand and _has_squares(node):
+        if squares and not summand:
             yield from _another_square(here, scope)
         if isinstance(node, ast.Name) and node.id in scope.arcs and (whole or summand):
             yield from _supplements(here, scope)
@@ -570,7 +571,7 @@ def _squares_and_products(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     node = here.node
     if not isinstance(node, ast.BinOp):
         return
-    if isinstance(node.op, ast.Pow) and getattr(node.right, "value", 0) == 2:
+    if _is_square(node):
         for _text, other in scope.simple(()):
             if follow(other, node.left):
                 first, last = sorted((other, node.left), key=text_of)
@@ -661,7 +662,7 @@ def _another_square(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
 
 
 def _is_square(node: ast.BinOp) -> bool:
-    return isinstance(node.op, ast.Pow) and getattr(node.right, "value", 0) == 2
+    return isinstance(node.op, ast.Pow) and chains.is_two(node.right)
 
 
 def _has_squares(node: ast.expr) -> bool:

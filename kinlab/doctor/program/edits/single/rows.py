@@ -103,11 +103,12 @@ def _neighbours(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
     for k in range(len(elements) - 1):
         square = shapes[k] if shapes[k] in ((3, 3), (4, 4)) else None
         same = ast.dump(elements[k]) == ast.dump(elements[k + 1])
-        swapped = [*elements[:k], elements[k + 1], elements[k], *elements[k + 2 :]]
-        if square is not None and shapes[k + 1] == square and not same:
-            yield here.within(here.node, "elts", swapped, "order", _SIDE_BY_SIDE)
-        elif len(elements) > _LONGEST and shapes[k : k + 2] == [(), ()] and not same:
-            yield here.within(here.node, "elts", swapped, "entries swapped", _SIDE_BY_SIDE)
+        poses = square is not None and shapes[k + 1] == square
+        numbers = len(elements) > _LONGEST and shapes[k : k + 2] == [(), ()]
+        if (poses or numbers) and not same:
+            swapped = [*elements[:k], elements[k + 1], elements[k], *elements[k + 2 :]]
+            kind = "order" if poses else "entries swapped"
+            yield here.within(here.node, "elts", swapped, kind, _SIDE_BY_SIDE)
 
 
 def _like_another(here: Here, rows: Sequence[ast.expr]) -> Iterator[ProgramEdit]:
