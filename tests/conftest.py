@@ -28,11 +28,22 @@ def _faults_are_raised(monkeypatch) -> None:
     monkeypatch.setattr("kinlab.doctor.examine.LOUD", True)
 
 
-def pytest_collection_modifyitems(items):
+def pytest_addoption(parser):
+    parser.addoption("--every-case", action="store_true", help="of tests marked many: all cases")
+
+
+def pytest_configure(config):
+    """Who names files, or tests, wants all that they hold; a worker is told by who sent it."""
+    if not hasattr(config, "workerinput") and config.args_source is config.ArgsSource.ARGS:
+        config.option.every_case = True
+
+
+def pytest_collection_modifyitems(config, items):
     """Marks the tests that open a browser, whose arithmetic is its own; the files with them first.
 
     A file stays on one worker, and these are the longest: begun last, they would leave the other
-    worker idle.
+    worker idle. Of a test marked ``many`` the whole suite takes one case; the others are counted as
+    deselected.
     """
     long = set()
     for item in items:
@@ -40,3 +51,16 @@ def pytest_collection_modifyitems(items):
             item.add_marker(pytest.mark.browser)
             long.add(item.path)
     items.sort(key=lambda item: item.path not in long)
+    if not config.option.every_case:
+        _keep_one_of_many(config, items)
+
+
+def _keep_one_of_many(config, items):
+    begun, kept, others = set(), [], []
+    for item in items:
+        name = item.nodeid.partition("[")[0]
+        again = name in begun and item.get_closest_marker("many")
+        (others if again else kept).append(item)
+        begun.add(name)
+    config.hook.pytest_deselected(items=others)
+    items[:] = kept

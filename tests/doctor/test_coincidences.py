@@ -180,6 +180,7 @@ def test_a_constant_is_rounded_by_one_percent_at_most(robot, entry, typed, said)
     assert said or "stands for" in found.remarks[0]
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(
     ("entry", "text", "number"),
     [

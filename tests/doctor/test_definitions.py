@@ -45,6 +45,7 @@ def test_the_texts_without_slips_are_right(robot: str, entry: str, text: str) ->
     assert kl.diagnose(robot, entry, text).agrees
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(
     ("robot", "entry", "text", "slips"),
     [
@@ -123,6 +124,7 @@ def test_what_is_equal_by_this_arms_numbers_alone_decides_nothing(entry, text, s
     assert found.causes and shown in found.causes[0].sentence, str(found)
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(
     ("robot", "entry", "text", "told"),
     [

@@ -47,6 +47,7 @@ NAMED = [
 ]  # fmt: skip
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(("key", "robot", "words"), NAMED)
 def test_a_misprint_is_named(key: str, robot: str, words: list[str]) -> None:
     row = next(f for f in catalogue() if f.key == key)

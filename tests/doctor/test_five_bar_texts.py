@@ -175,6 +175,7 @@ SLIPS = [
 ]  # fmt: skip
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(("entry", "text", "told"), SLIPS)
 def test_one_slip_is_named_and_put_right(entry: str, text: str, told: str) -> None:
     found = kl.diagnose("isotropic", entry, text, samples=40)
@@ -202,6 +203,7 @@ PAIRS = [
 ]  # fmt: skip
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(("entry", "text"), PAIRS)
 def test_two_slips_are_named_and_put_right(entry: str, text: str) -> None:
     found = kl.diagnose("isotropic", entry, text, samples=40)

@@ -164,6 +164,7 @@ def sentence(tmp_path, monkeypatch):
     return told
 
 
+@pytest.mark.many
 @pytest.mark.parametrize("name", KEPT)
 def test_where_numbers_are_kept(name, sentence) -> None:
     kept, taken = KEPT[name]

@@ -191,6 +191,7 @@ def test_the_programs_are_right_before_the_slips(k) -> None:
     assert kl.compare(robot, quantity, written(text)).agrees
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(
     ("k", "slips", "kinds"),
     [

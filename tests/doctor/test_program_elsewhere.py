@@ -270,6 +270,7 @@ def test_the_programs_are_right(name) -> None:
     assert kl.diagnose(robot, quantity, written(text)).agrees
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(("name", "slips"), [x[:2] for x in SLIPS], ids=[x[2] for x in SLIPS])
 def test_what_the_rest_of_the_program_shows_is_told(name, slips, tmp_path) -> None:
     robot, quantity, text = PROGRAMS[name]

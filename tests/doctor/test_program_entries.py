@@ -228,6 +228,7 @@ def test_the_programs_are_right(name: str) -> None:
     assert kl.compare(robot, quantity, written(text)).agrees
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(
     ("name", "slips", "told"),
     [

@@ -228,6 +228,7 @@ def test_every_program_is_right(name):
     assert kl.diagnose(robot, quantity, written(text)).agrees
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(
     ("name", "right", "slip", "kind"),
     [

@@ -169,6 +169,7 @@ def test_the_programs_are_right(name) -> None:
     assert kl.diagnose(robot, quantity, written(text)).agrees
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(
     ("name", "old", "new"), [x[:3] for x in FORGOTTEN], ids=[x[3] for x in FORGOTTEN]
 )
@@ -179,6 +180,7 @@ def test_what_is_forgotten_is_told(name, old, new) -> None:
     assert good, str(found)
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(
     ("name", "slips"),
     [

@@ -199,6 +199,7 @@ def test_the_programs_are_right_before_the_slips(name) -> None:
     assert kl.compare(robot, quantity, written(text)).agrees
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(
     ("name", "slips"),
     [

@@ -119,6 +119,7 @@ def test_the_programs_are_right(text) -> None:
     assert kl.diagnose(ARM, "inverse_dynamics", written(text)).agrees
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(
     ("text", "slips"),
     [

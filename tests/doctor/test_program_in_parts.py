@@ -123,6 +123,7 @@ def test_the_programs_are_right(name) -> None:
     assert kl.compare(robot, quantity, written(text)).agrees
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(
     ("name", "slips", "line"),
     [
@@ -146,6 +147,7 @@ def test_one_slip(name, slips, line) -> None:
     assert line.replace(" ", "") in said.replace("'", '"').replace(" ", ""), said
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(
     ("name", "slips"),
     [

@@ -160,6 +160,7 @@ def test_the_programs_are_right(name: str) -> None:
     assert kl.diagnose(robot, quantity, written(text), samples=20).agrees
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(
     ("name", "slips", "told"),
     [

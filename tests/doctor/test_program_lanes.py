@@ -118,6 +118,7 @@ def _is_tangent(new) -> bool:
     return isinstance(new, str) and new == "tan"
 
 
+@pytest.mark.many
 @pytest.mark.parametrize("name", TEXTS)
 def test_a_lane_answers_as_the_edited_program(name) -> None:
     search = in_every_way(*TEXTS[name])
@@ -225,6 +226,7 @@ def test_lanes_that_would_go_another_way_are_lost() -> None:
     np.testing.assert_array_equal(lanes.lost, [True, False, False, False])
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(
     ("name", "slips"),
     [

@@ -291,6 +291,7 @@ def test_the_programs_are_right(name) -> None:
     assert kl.diagnose(robot, quantity, written(text)).agrees
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(
     ("name", "right", "wrong"),
     [
@@ -319,6 +320,7 @@ def test_one_slip(name, right, wrong) -> None:
     assert whole.replace(" ", "") in said, said
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(
     ("name", "slips"),
     [

@@ -298,6 +298,7 @@ def f(q, qd, tau):
 """
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(
     ("robot", "quantity", "text", "right", "slip"),
     [

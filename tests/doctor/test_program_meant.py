@@ -848,6 +848,7 @@ SLIPS = [
 ]
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(
     ("text", "robot", "quantity", "slips"), [x[:4] for x in SLIPS], ids=[x[4] for x in SLIPS]
 )

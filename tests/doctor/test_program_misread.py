@@ -39,6 +39,7 @@ def f(q, v, a):
 """
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(
     ("right", "slip"),
     [

@@ -123,6 +123,7 @@ def test_the_robots_numbers_to_the_digits_written(slips: list, remark: str) -> N
     assert any(one.startswith(remark) for one in found.remarks)
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(
     ("right", "slip"),
     [

@@ -142,6 +142,7 @@ def test_the_programs_are_right(name) -> None:
     assert kl.compare(robot, quantity, written(text)).agrees
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(
     ("name", "slips"),
     [

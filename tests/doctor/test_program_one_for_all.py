@@ -396,6 +396,7 @@ _CASES = [
 ]  # fmt: skip
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(("text", "robot", "quantity", "slips"), _CASES)
 def test_it_is_told(text, robot, quantity, slips, tmp_path) -> None:
     assert kl.diagnose(robot, quantity, written(text)).agrees

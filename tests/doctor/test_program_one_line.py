@@ -165,6 +165,7 @@ CASES = {
 }  # fmt: skip
 
 
+@pytest.mark.many
 @pytest.mark.parametrize("case", CASES)
 def test_what_was_there_is_told(case, tmp_path) -> None:
     text, robot, quantity, slips, told = CASES[case]

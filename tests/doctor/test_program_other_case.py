@@ -210,6 +210,7 @@ def f(q):
 """
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(
     ("robot", "quantity", "text", "right", "slip"),
     [

@@ -262,6 +262,7 @@ def test_a_slip_is_told_where_it_was_made(name, right, slip, kind, tmp_path):
     assert kind in cause.kinds[0]
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(
     ("name", "slips", "said"),
     [

@@ -288,6 +288,7 @@ WITHOUT_FILE = (
 WAYS = [(name, True) for name in SLIPS] + [(name, False) for name in WITHOUT_FILE]
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(("name", "file"), WAYS)
 def test_a_slip_is_told_with_its_line_and_its_repair(name, file, load):
     right, quantity, old, new = SLIPS[name]

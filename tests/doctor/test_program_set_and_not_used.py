@@ -171,6 +171,7 @@ def f(xy, v, mode):
 """
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(
     ("robot", "quantity", "text", "right", "slip"),
     [

@@ -170,6 +170,7 @@ def f(q, twist):
 """
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(
     ("robot", "quantity", "text", "right", "slip"),
     [

@@ -36,6 +36,7 @@ def f(q, target):
 """
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(
     ("robot", "quantity", "text", "slips"),
     [

@@ -351,6 +351,7 @@ def test_the_programs_are_right(name) -> None:
     assert kl.diagnose(robot, quantity, written(text)).agrees
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(("name", "old", "new"), [x[:3] for x in SLIPS], ids=[x[3] for x in SLIPS])
 def test_a_slip_is_told(name, old, new) -> None:
     robot, quantity, text = PROGRAMS[name]
@@ -359,6 +360,7 @@ def test_a_slip_is_told(name, old, new) -> None:
     assert good, str(found)
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(
     ("name", "old", "new", "said"),
     [
@@ -382,6 +384,7 @@ def test_a_slip_is_told_in_these_words(name, old, new, said) -> None:
     assert said in str(kl.diagnose(robot, quantity, wrong, samples=20))
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(
     ("name", "slips"),
     [

@@ -221,6 +221,7 @@ def test_the_programs_are_right(name) -> None:
     assert kl.diagnose(robot, quantity, written(text)).agrees
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(("name", "slips"), [x[:2] for x in SLIPS], ids=[x[2] for x in SLIPS])
 def test_slips_of_structured_programs_are_told(name, slips, tmp_path) -> None:
     robot, quantity, text = PROGRAMS[name]

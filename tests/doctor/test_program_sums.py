@@ -171,6 +171,7 @@ def test_the_programs_are_right(name) -> None:
     assert kl.diagnose(robot, quantity, written(text)).agrees
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(("name", "old", "new"), [x[:3] for x in SLIPS], ids=[x[3] for x in SLIPS])
 def test_a_slip_in_a_sum_of_products_is_told(name, old, new) -> None:
     robot, quantity, text = PROGRAMS[name]
@@ -178,6 +179,7 @@ def test_a_slip_in_a_sum_of_products_is_told(name, old, new) -> None:
     assert good, str(found)
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(("name", "slips"), [x[:2] for x in SEVERAL], ids=[x[2] for x in SEVERAL])
 def test_it_is_told_beside_other_slips(name, slips) -> None:
     robot, quantity, text = PROGRAMS[name]

@@ -120,6 +120,7 @@ SLIPS = [
 ]
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(("right", "piece", "slip"), SLIPS)
 def test_the_line_is_put_right(right, piece, slip) -> None:
     assert right.count(piece) == 1

@@ -103,6 +103,7 @@ SLIPS = [
 ]
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(("name", "slips"), SLIPS)
 def test_the_term_with_it_is_told(name, slips) -> None:
     text, robot, quantity = RIGHT[name]

@@ -266,6 +266,7 @@ CASES = {
 }  # fmt: skip
 
 
+@pytest.mark.many
 @pytest.mark.parametrize("case", CASES)
 def test_it_is_put_right_where_it_is_worked_out(case) -> None:
     text, robot, quantity, slips, told = CASES[case]

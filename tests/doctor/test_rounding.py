@@ -39,6 +39,7 @@ PLANAR = sorted({(key, robot) for key, robot, _ in NAMED if robot in ("planar2r"
 LARGER = sorted({(key, robot) for key, robot, _ in NAMED} - set(PLANAR))
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(("key", "robot"), PLANAR)
 def test_a_misprint_is_told_alike(rounding, key, robot):
     judged = rounding.misprints({(key, robot)})
@@ -47,6 +48,7 @@ def test_a_misprint_is_told_alike(rounding, key, robot):
     assert rounding.changes(judged, SEEDS if key == "001.ddt1" else SEEDS[:3]) == []
 
 
+@pytest.mark.many
 @pytest.mark.parametrize(("key", "robot"), LARGER)
 def test_a_misprint_of_a_spatial_arm_is_told_alike(rounding, key, robot):
     judged = rounding.misprints({(key, robot)}, samples=20)

@@ -38,7 +38,7 @@ def _agrees(quantity: str, text: str) -> bool:
 )
 def test_a_sum_goes_on_below(before: str, sum_of: str) -> None:
     judged = []
-    for (opened, closed), end in itertools.product(_AROUND, _ENDS):
+    for (opened, closed), end in zip(itertools.cycle(_AROUND), _ENDS, strict=False):
         both = sum_of.format(first=_FIRST, second=_SECOND, end=end, before=before)
         wrong = sum_of.format(first=_FIRST, second=f"2 {_SECOND}", end=end, before=before)
         one = f"{opened}g_1 &= {both}{closed}"
