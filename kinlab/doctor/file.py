@@ -38,6 +38,7 @@ from kinlab.errors import ExpressionError, FileError, KinlabError, NameUnknownEr
 from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree
 from kinlab.formulas.files import FormulaFile, formula_file
+from kinlab.formulas.language.prose import Doubt
 from kinlab.formulas.lines import Lines, read_lines
 from kinlab.formulas.signs.refusals import refused
 from kinlab.formulas.text import canonical, parse, words_in
@@ -124,6 +125,7 @@ def examine_formulas(
     """
     file = as_judged(file, robot)
     parts, unheld = [_examined(file, robot, samples, seed)], list[str]()
+    files = [file]
     unread, unsure = file.broken, ""
     right = all(one.agrees for one in parts[0])
     if unread and not all(one.agrees or one.causes for one in parts[0]):
@@ -143,10 +145,15 @@ def examine_formulas(
             unsure = unsure or _("its names may be of another point, or another link")
         else:
             parts.append(part)
+            files.append(other)
     if unread and right and not all(one.agrees for part in parts for one in part):
         raise ExpressionError(unread)  # what was not read may say of what the rest is
     unknown = (file.broken or unsure or unread).removeprefix(f"{file.path}: ")
-    alike = [part for part in parts if len(part) == len(parts[0])]
+    alike = [
+        [_judged_with(one, file.unread, of.formulas) for one in part]
+        for part, of in zip(parts, files, strict=True)
+        if len(part) == len(parts[0])
+    ]
     told = [_of_chain(list(same)) for same in zip(*alike, strict=True)]
     if unknown:
         said = _("a part of the chain of equalities was not judged ({why})").format(why=unknown)
@@ -154,8 +161,7 @@ def examine_formulas(
     for line in dict.fromkeys(reversed(unheld)):
         said = _("another line, {line!r}, was not judged: it may be of a part")
         told = [replace(one, remarks=(*one.remarks, said.format(line=line))) for one in told]
-    told = [_with_remarks(one, file.remarks) for one in told] if file.remarks else told
-    return [_judged_with(one, file) for one in told] if file.unread else told
+    return [_with_remarks(one, file.remarks) for one in told] if file.remarks else told
 
 
 def _given_twice(found: Diagnosis) -> Diagnosis:
@@ -179,21 +185,23 @@ def _counted(label: str) -> str:
     return f"({told})" if "," in told else told
 
 
-def _judged_with(found: Diagnosis, file: FormulaFile) -> Diagnosis:
+def _judged_with(
+    found: Diagnosis, words: Mapping[str, Doubt], formulas: Mapping[str, Node]
+) -> Diagnosis:
     """A diagnosis of a formula with words that were not read: right as it stands, or not judged.
 
     What holds in a special case alone has fewer terms and names; a slip that leaves them as many
     is none of that, unless the words tell of other axes. The sign of the whole may be another sense
     of turning, or another gravity, by whatever words: ``on the ceiling``.
     """
-    unread = [file.unread[one] for one in found.function.split(", ") if one in file.unread]
+    unread = [words[one] for one in found.function.split(", ") if one in words]
     if not unread:
         return found
     if found.agrees:
         said = _("the words {words!r} beside the formula were not read: it is judged without them")
         return replace(found, remarks=(*found.remarks, said.format(words=unread[0].words)))
     turned = any(one.turned for one in unread) or _is_negative(found)
-    if not turned and _names_as_much(found, file):
+    if not turned and _names_as_much(found, formulas):
         return found
     said = words_unread(unread[0].words)
     return replace(found, causes=(), partial=(), proved=(), form="words", remarks=(said,))
@@ -219,12 +227,12 @@ def _is_negative(found: Diagnosis) -> bool:
     return bool(np.allclose(found.hand, -found.engine, rtol=TOLERANCES.formula_agrees, atol=0.0))
 
 
-def _names_as_much(found: Diagnosis, file: FormulaFile) -> bool:
+def _names_as_much(found: Diagnosis, formulas: Mapping[str, Node]) -> bool:
     """Whether a formula with a slip has as many angles in it as the right one."""
     if not found.causes or not {*found.causes[0].kinds} <= _UNCONDITIONED:
         return False
     right = found.causes[0].corrected
-    pairs = [(parse(right[one]), file.formulas[one]) for one in right if one in file.formulas]
+    pairs = [(parse(right[one]), formulas[one]) for one in right if one in formulas]
     return all(_angles(new) <= _angles(old) for new, old in pairs)
 
 
@@ -259,15 +267,31 @@ def _may_mean_another(other: FormulaFile, file: FormulaFile) -> bool:
 
 
 def _of_chain(parts: list[Diagnosis]) -> Diagnosis:
-    """What is told of ``a = b = c``: the part that is wrong, or the one that holds most widely."""
+    """What is told of ``a = b = c``: the part that is wrong, or the one that holds most widely.
+
+    Of several wrong ones it is the last, which is what was meant; where all have its values, the
+    first of those with the fewest slips: there it was made, and the others carry it on.
+    """
     wrong = [one for one in parts if not one.agrees]
     if not wrong:
         return min(parts, key=lambda one: (bool(one.form), len(one.remarks)))
-    if len(wrong) == len(parts):
-        return wrong[0]
-    told = _("another part of the chain of equalities is right")
-    found = replace(wrong[0], proved=(*wrong[0].proved, told))
-    return _also_said(found, (told,)) if found.causes else found
+    alike = [one for one in wrong if one.causes and _has_the_values_of(one, wrong[0])]
+    made = min(reversed(alike), key=lambda one: len(one.causes[0].kinds), default=wrong[0])
+    notes = list[str]()
+    if made.causes and made.causes[0].sentence not in [x.sentence for x in wrong[0].causes[:1]]:
+        notes += [_("the rest of the chain of equalities carries it on")]
+    if len(wrong) < len(parts):
+        notes += [_("another part of the chain of equalities is right")]
+        made = replace(made, proved=(*made.proved, notes[-1]))
+    return _also_said(made, (*notes,)) if made.causes else made
+
+
+def _has_the_values_of(one: Diagnosis, other: Diagnosis) -> bool:
+    """Whether two formulas have one value at their worst states, to rounded numbers."""
+    if one.hand is None or other.hand is None or np.shape(one.hand) != np.shape(other.hand):
+        return False
+    near = 1e-3 * np.abs(other.hand).max(initial=0.0)
+    return bool(np.allclose(one.hand, other.hand, rtol=0.0, atol=near))
 
 
 def _examined(file: FormulaFile, robot: Mechanism, samples: int, seed: int) -> list[Diagnosis]:

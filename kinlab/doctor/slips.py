@@ -309,6 +309,7 @@ def _definitions(
             if isinstance(derived, Derivation):
                 names = [x for x in names if not stands_so(line.text, x, derived.arm.words)]
                 names = [x for x in names if not _is_a_moment_so(case, told, x)]
+                names = [x for x in names if not _is_an_entry(case, told, x)]
             if names:
                 yield entry, Definitions(line, told, here, names)
 
@@ -323,6 +324,23 @@ def _is_a_moment_so(case: Case, text: Written, name: str) -> bool:
     except (KinlabError, KeyError):
         return False
     return bool(np.max(np.abs(value - number)) <= TOLERANCES.formula_agrees * abs(number))
+
+
+def _is_an_entry(case: Case, text: Written, name: str) -> bool:
+    """Whether a name is explained as what some entry is: M22 of ``M12 = M22 + ...``.
+
+    A number of the arm's is none: ``I2 = m2*l2^2/3`` is a slip, though M22 is that.
+    """
+    if _number_of(case, name):
+        return False
+    whole = case.engine(case.robot, case.arguments)
+    entries = whole.reshape(len(whole), -1).T
+    try:
+        value = np.broadcast_to(text.definition(name).values(_numbers_here(case)), len(whole))
+    except (KinlabError, KeyError):
+        return False
+    near = TOLERANCES.formula_agrees * np.abs(entries).max(axis=1, initial=0.0)
+    return bool(np.any((np.abs(entries - value).max(axis=1, initial=0.0) <= near) & (near > 0)))
 
 
 def _as_read(

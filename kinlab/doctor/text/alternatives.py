@@ -45,6 +45,9 @@ _OF_LINKS = set().union(*_LENGTHS)
 _MOTION = re.compile(r"(qdd|qd|q)(\d+)")
 _OWN = 0.2
 """What another number of the robot's costs less for one of its own."""
+_LACKS = N_("the factor {factor} is missing in {term}")
+_NAMED = 0.3
+"""What a factor costs more in a number of the robot's that is put in for its name."""
 _ANGLE, _NEAR_ANGLE = math.pi / 12, 0.1
 """Angles that a decimal in a sine may be meant for, and how near, relative."""
 _REDUCED = 0.05
@@ -155,6 +158,7 @@ def _name(line: Line, place: Place, name: str) -> None:
             same = word[-1] == name[-1] or not (word[-1].isdigit() or name[-1].isdigit())
             if same and {_letters(word), _letters(name)} in _LENGTHS:
                 cost = 1.3 if _beside_a_length(line, place) else 1.1
+                cost = 1.35 if _with_a_two(line, place) and word[-2:-1] == "c" else cost
                 cost = 1.4 if _halves_lengths(line) and word not in words_in(line.source) else cost
             line.instead(place, word, value, "index" if near else "parameter", cost)
             if not np.any(place.value):
@@ -194,6 +198,13 @@ def _beside_a_length(line: Line, place: Place) -> bool:
     return any(others) and not re.search(r"(?<![\w.*^])\d", product)
 
 
+def _with_a_two(line: Line, place: Place) -> bool:
+    """Whether a 2 stands in the product: rather that is too many than a length is for its half."""
+    while place.above is not None and is_product(place.above.node):
+        place = place.above
+    return bool(re.search(r"(?<![\w.*^/])2(?![\w.])", line.segment(place)))
+
+
 def _node(line: Line, place: Place, node: Node, kind: str, cost: float) -> None:
     if tree.names(node) <= set(line.at):
         new = line.spelled(node)
@@ -208,12 +219,15 @@ def _number(line: Line, place: Place) -> None:
     if above is not None and isinstance(above.node, ast.UnaryOp):  # the 2 of -2*m2
         above = above.above
     idle = above is not None and is_product(above.node)
+    typed = float(line.segment(place))
+    of_a_name = _stands_for_a_name(line, place, typed)
     for shown, size in NUMBERS.items():
         shown = "0.25" if decimal and size == 0.25 else shown
-        if size != float(line.segment(place)) and not (size == 1.0 and idle):
-            cost = 1.25 + _REDUCED * _may_be_reduced(place, size)
+        if size != typed and not (size == 1.0 and idle):
+            cost = 1.25 + _REDUCED * _may_be_reduced(place, size) + _NAMED * of_a_name
             line.instead(place, shown, np.full(line.count, size), "factor", cost)
-    typed = float(line.segment(place))
+    if of_a_name:
+        _put_in(line, place, typed)
     for factor in (2, 0.5) if typed.is_integer() and typed >= _LARGE else ():
         if (factor * typed).is_integer():  # 60 for 30
             shown = f"{factor * typed:.0f}"
@@ -226,7 +240,7 @@ def _number(line: Line, place: Place) -> None:
     if line.numeric:
         right = _fitting(line, place)
         shown = np.format_float_positional(right, 12, fractional=False, trim="-")
-        held = line.meanings.holds(float(line.segment(place)))
+        held = line.meanings.holds(typed)
         means = line.meanings.holds(right) or (not decimal and shown.isdigit())
         # an error of all numbers that are written so would be laid into this one
         sure = means or (decimal and len(alike(line, line.segment(place))) < 2)
@@ -275,6 +289,46 @@ def _among_numbers(place: Place) -> bool:
     """Whether a number stands in a product of nothing but numbers."""
     term = _term_of(place)
     return term is not place and not any(isinstance(x, ast.Name) for x in ast.walk(term.node))
+
+
+def _stands_for_a_name(line: Line, place: Place, size: float) -> bool:
+    """Whether a number is one of the robot's, put in beside others: the 0.4 of ``1.5*9.81*0.4``."""
+    if line.meanings.parameter(size) is None:
+        return False
+    while place.above is not None and (is_product(place.above.node) or _is_base(place)):
+        place = place.above
+    return sum(isinstance(one, ast.Constant) for one in _in_product(place.node)) > 1
+
+
+def _in_product(node: ast.expr) -> list[ast.expr]:
+    """What is multiplied, or divided, whatever its power."""
+    if is_product(node):
+        return [*_in_product(node.left), *_in_product(node.right)]
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow):
+        return [node.left]
+    return [node]
+
+
+def _put_in(line: Line, place: Place, size: float) -> None:
+    """What is meant by a number for a name: its square, half a length, and g beside."""
+    written, name = line.segment(place), line.meanings.parameter(size) or ""
+
+    def should_be(where: Place, shown: str, value: float, cost: float = 1.2) -> None:
+        line.instead(where, shown, np.full(line.count, value), "coefficient", cost)
+
+    squares = 1.35 if size in NUMBERS.values() else 1.2  # a square of 1/4 is a quarter of it
+    should_be(place, f"{written}**2", size**2, squares)
+    if place.above is not None and _is_base(place):
+        should_be(place.above, written, size, squares)
+    if name[0] == "l":
+        should_be(place, f"{size / 2:.12g}", size / 2)
+    gravity = line.meanings.own.get("g")
+    if name[0] == "m" and gravity:
+        told, pieces = line.told(place, _LACKS, _LACKS)
+        end, factor = place.span[1], f"{gravity:.12g}"
+        pieces = {"term": written} | pieces | {"factor": factor}
+        new, span = np.full(line.count, size * gravity), (end, end, f"*{factor}")
+        line.edit(place, new, span, "coefficient", 1.2, told, pieces)
 
 
 def _term_of(place: Place) -> Place:
@@ -419,6 +473,7 @@ def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
         with np.errstate(all="ignore"):
             line.instead(place, f"{first}/{second}", left.value / right.value, "factor", 1.45)
     _linear(line, place, left, right)
+    _times_for_plus(line, place, left, right)
     told, pieces = line.told(
         place,
         N_("the factor {factor} does not belong"),
@@ -701,6 +756,31 @@ def _plus_for_times(line: Line, place: Place, at: int) -> None:
     line.edit(place, value, (at, at + 1, "*"), "operator", 1.25, told, shown_so)
 
 
+def _times_for_plus(line: Line, place: Place, left: Place, right: Place) -> None:
+    """Two rates multiplied where their sum belongs: ``h*qd1*qd2`` for ``h*(qd1 + qd2)``."""
+    last, front = left, np.ones(line.count)
+    if isinstance(left.node, ast.BinOp) and isinstance(left.node.op, ast.Mult):
+        before, last = line.siblings[id(left)]
+        front = before.value
+    names = [one.node.id for one in (last, right) if isinstance(one.node, ast.Name)]
+    if len({*names}) != 2 or not all(_is_rate(line, name) for name in names):
+        return
+    start, end = last.span[0], right.span[1]
+    new = f"({names[0]} + {names[1]})"
+    told, pieces = line.told(
+        place, N_("{old} should be {new}"), N_("{old} should be {new} in {term}")
+    )
+    pieces |= {"old": line.source[start:end], "new": new}
+    value = front * (last.value + right.value)
+    line.edit(place, value, (start, end, new), "operator", 1.2, told, pieces)
+
+
+def _is_rate(line: Line, word: str) -> bool:
+    """Whether a name is a joint's rate."""
+    found = _MOTION.fullmatch(str(line.meaning(word).value))
+    return found is not None and found[1] == "qd"
+
+
 def _linear(line: Line, place: Place, left: Place, right: Place) -> None:
     """A sine or cosine of a sum taken for the product: s1*s2 for s12."""
     last = left
@@ -778,6 +858,7 @@ def _as_fraction(line: Line, place: Place, left: Place, right: Place) -> None:
 
 _DECIMAL = re.compile(r"\s*[-+]?\s*(\d+\.\d*[1-9]\d*)(?![\d.eE/]|\s*/)")
 """A number with decimals that a term begins with."""
+_TIMES_A_NUMBER = re.compile(r"\s*[*·]\s*\d")
 
 
 def _as_factor(line: Line, place: Place) -> None:
@@ -789,7 +870,8 @@ def _as_factor(line: Line, place: Place) -> None:
     share = isinstance(node, ast.BinOp) and not whole and _in_brackets(line, place)
     share = share and bool(words_in(piece)) and piece[:1] != "("  # (l1/2), and no \\frac
     if (isinstance(node, (ast.Name, ast.Call)) or whole or share) and not _is_base(place):
-        cost = 1.4 if whole else 1.1
+        rates = whole and all(_is_rate(line, word) for word in words_in(piece))
+        cost = 1.4 if whole and not rates else 1.1  # a link's rate is squared as a joint's
         closed = re.match(r"\s*\)", line.source[place.span[1] :])
         outside = _outer_start(line, place) < place.span[0] and closed is not None
         behind = place.span[1] + (closed.end() if closed else 0)
@@ -822,7 +904,10 @@ def _as_factor(line: Line, place: Place) -> None:
         if front_ is not None and 1 < len(number) <= len(front_[1]) + 1:  # 2.943 for 5.886/2
             retyped = (start + front_.start(1), start + front_.end(1), number)
             new = f"{piece[: front_.start(1)]}{number}{piece[front_.end(1) :]}"
-            line.instead(place, new, size * place.value, "factor", 1.35, retyped)
+            named = line.meanings.parameter(float(front_[1])) is not None
+            named &= bool(_TIMES_A_NUMBER.match(piece, front_.end(1)))
+            cost = 1.35 + _NAMED * named
+            line.instead(place, new, size * place.value, "factor", cost, retyped)
             continue
         new = f"{body}{shown}" if shown[0] == "/" else f"{shown}*{body}"
         cost = (1.2 if size in (2.0, 0.5) else 1.6) + extra + numbered
@@ -851,7 +936,7 @@ def _as_factor(line: Line, place: Place) -> None:
 def _times(line: Line, place: Place, word: str, value: Array, cost: float, at: int) -> None:
     """A factor that is missing in a term, at a place in it; in front of a sum in parentheses."""
     piece, (start, end) = line.segment(place), place.span
-    told = N_("the factor {factor} is missing in {term}")
+    told = _LACKS
     span = (at, at, f"*{word}" if at == end else f"{word}*")
     if is_sum(place.node) and at in place.span:  # no parentheses around it
         span = (start, end, f"{word}*({piece})")

@@ -54,6 +54,12 @@ _OF_AN_ANGLE = 0.1
 """What a factor costs more that is an angle: of these sines and cosines are factors."""
 _MIXED = 0.96
 """Cost of a lost 2 in the mixed term of a square: a length for a distance is as soon mistaken."""
+_BEYOND = 1.02
+"""Cost of a link's point for its origin."""
+_CENTRES = ("r", "c", "lc", "rc", "ac", "lg", "rg", "com")
+"""Names for the distance of a centre of mass from its joint."""
+_OF_A_CENTRE = 1.0
+"""Cost of the half of a length for all of it, where it is called as a centre's distance."""
 _MIXED_SQUARE = 1.07
 """Cost of a product of two rates for a square, or of a square for it."""
 _ENTRY = 1.13
@@ -226,6 +232,7 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
             cost = 1.15 if rare else 1.05 + _ODD * (passed or counted)
             cost = _KEPT if _keeps(parent, node) else cost
             cost = _MIXED if value == 2 and _is_mixed(here) else cost
+            cost = _OF_A_CENTRE if value < 1 and _is_called_a_centre(here) else cost
             yield here.instead(times, "factor", cost + _OF_A_LIST * used)
         if summand and isinstance(node, ast.Name | ast.Subscript) and scope.divisors & _MILLIMETRES:
             yield here.instead(chains.times(number(1000), node), "factor", _IN_MILLIMETRES)
@@ -341,6 +348,15 @@ def _divided(here: Here, scope: Scope, summand: bool) -> Iterator[ProgramEdit]:
             yield here.instead(new, "missing factor", _DIVIDED)
 
 
+def _is_called_a_centre(here: Here) -> bool:
+    """Whether a length is set for what is called as a centre's distance: ``r = l2``."""
+    node, parent = here.node, here.parent
+    if not isinstance(parent, ast.Assign) or not isinstance(node, ast.Name):
+        return False
+    target = parent.targets[-1]
+    return isinstance(target, ast.Name) and target.id.rstrip("0123456789_").lower() in _CENTRES
+
+
 def _is_mixed(here: Here) -> bool:
     """Whether it is the mixed term of a square of a sum: ``a*b*c`` beside ``a**2 + b**2``."""
     above = (x for x in here.above if isinstance(x, ast.BinOp))
@@ -348,13 +364,13 @@ def _is_mixed(here: Here) -> bool:
     if here.parent not in sums:
         return False
     squared = {
-        text_of(x.left)
+        frozenset(map(text_of, factors(x.left)))
         for one in summands(sums[0])
         for x in nodes(one)
         if isinstance(x, ast.BinOp) and isinstance(x.op, ast.Pow)
     }
     own = {text_of(x) for x in factors(here.node)}
-    return len(own & squared) > 1
+    return sum(one <= own for one in squared) > 1
 
 
 def _instead_of_zero(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
@@ -533,6 +549,7 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
     if may_be and (operated or term or negated):
         yield here.instead(ast.BinOp(node, ast.Pow(), number(2)), "power", 1.08)
     yield from _squares_and_products(here, scope)
+    yield from _beyond_the_origin(here, scope)
     if term:
         yield from _two_factors(here, scope)
     if operated:
@@ -564,6 +581,21 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
             for op, cost in ((ast.Add(), 1.0), (ast.Sub(), rest)):
                 new = ast.BinOp(node, op, scalar)
                 yield here.instead(new, "missing term", cost + dear)
+
+
+def _beyond_the_origin(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """A coordinate of a point of the link for that of its origin: ``T[2, 3] + T[2, :3] @ c``."""
+    node = here.node
+    if not isinstance(node, ast.Subscript) or not isinstance(node.slice, ast.Tuple):
+        return
+    row, column = node.slice.elts
+    if getattr(column, "value", None) not in (3, -1) or not scope.is_pose(node.value):
+        return
+    axes = ast.Tuple([row, ast.Slice(None, number(3))], ast.Load())
+    along = ast.Subscript(node.value, axes, ast.Load())
+    for _text, point in scope.pieces_here((3,)).items():
+        new = ast.BinOp(node, ast.Add(), ast.BinOp(along, ast.MatMult(), point))
+        yield here.instead(new, "missing term", _BEYOND + scope.dear(point))
 
 
 def _squares_and_products(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

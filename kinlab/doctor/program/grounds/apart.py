@@ -557,6 +557,16 @@ class _Reader:
             ]
             if all(k is not None for _one, k in each):
                 yield tuple((one, k) for one, k in each if k is not None)
+                self._tie_alike(kind, group)
+
+    def _tie_alike(self, kind: str, group: list[tuple[ProgramNumber, list[int]]]) -> None:
+        """Numbers of the arm's that are one, each of which any of several may be: a2 and d4."""
+        first, *others = dict.fromkeys(
+            self.cells[k].which for _one, left in group for k in left if self.cells[k].kind == kind
+        )
+        for which in others:
+            if self.tied.get(which, which) == which:
+                self.tied[which] = self.tied.get(first, first)
 
 
 def _summed(trial: Trial) -> set[int]:

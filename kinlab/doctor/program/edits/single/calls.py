@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 from itertools import combinations
+from types import FunctionType
 
 from kinlab.doctor.bytecode.syntax import called, names, nodes, pieces, text_of
 from kinlab.doctor.program.edits import chains
@@ -34,6 +35,10 @@ _DIAGONAL = 1.02
 """Cost of the main diagonal for another."""
 _ARGUMENTS, _APART = 4, 0.03
 """The same of arguments; what it costs more of those that do not stand side by side."""
+_CONJUGATES, _CONJUGATE = ("conj", "conjugate"), 1.04
+"""Functions that conjugate, and the cost of one that spoils a complex step."""
+_WORD = 1.04
+"""Cost of another word of a call."""
 _ARCS = ("arcsin", "asin", "arccos", "acos")
 """Functions that do not tell the quadrant."""
 _BACKWARDS = 0.97
@@ -128,6 +133,11 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
             yield here.within(node.args, len(node.args) - 1, number(k), "index", cost)
     if name == "range":
         yield from _range(here, scope)
+    if name in _CONJUGATES and not (node.args and isinstance(node.func, ast.Name)):
+        of = node.args[0] if node.args else getattr(node.func, "value", None)
+        if isinstance(of, ast.expr):
+            yield here.instead(of, "function", _CONJUGATE)
+    yield from _other_words(here, scope)
     for word in node.keywords:
         axes = range(max(_AXES, len(observed.shape(node) or ())))
         if word.arg == "axis" and getattr(word.value, "value", None) in axes:
@@ -291,6 +301,22 @@ def _is_typed_in(node: ast.expr) -> bool:
     """Whether nothing but numbers stand there."""
     plain = ast.List | ast.Tuple | ast.Constant | ast.UnaryOp | ast.unaryop | ast.expr_context
     return all(isinstance(one, plain) for one in nodes(node))
+
+
+def _other_words(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """A word of a call that gives another argument: ``xz=0.001`` for ``xy=0.001``."""
+    node = here.node
+    if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Name) or not node.keywords:
+        return
+    own = scope.space.get(node.func.id)
+    if not isinstance(own, FunctionType):
+        return
+    code, given = own.__code__, {word.arg for word in node.keywords}
+    left = code.co_varnames[len(node.args) : code.co_argcount + code.co_kwonlyargcount]
+    for word in node.keywords:
+        for other in left:
+            if word.arg in left and other not in given:
+                yield here.within(word, "arg", other, "name", _WORD)
 
 
 def _of_a_copy(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:

@@ -18,6 +18,8 @@ _THREE = 3
 """Factors from which on the rest of a product stays."""
 _PAIR = 2
 """Sides of a matrix, factors that change places, arguments with a diagonal."""
+_CONGRUENT = 0.97
+"""Cost of a tensor that is turned the other way: sooner than its matrix is set up so."""
 _ROWS = 1.12
 """Cost of a row times a matrix for the matrix times a column."""
 _HALVES, _TYPED = (2, 0.5), 1.045
@@ -282,7 +284,7 @@ def _turned(here: Here) -> Iterator[ProgramEdit]:
         if f"{ast.unparse(first)}.T" == ast.unparse(last) or _is_turned_into(last, first):
             new = [*every[:k], last, every[k + 1], first, *every[k + _THREE :]]
             by = [(ast.MatMult(), other) for other in new[1:]]
-            yield here.instead(chains.joined(new[0], by), "transposed", 1.03)
+            yield here.instead(chains.joined(new[0], by), "transposed", _CONGRUENT)
 
 
 def _is_turned_into(one: ast.expr, other: ast.expr) -> bool:
