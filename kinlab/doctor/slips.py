@@ -359,7 +359,8 @@ def _is_simpler(slip: Slip, others: list[Slip], line: Line) -> bool:
 
     Of as many words the likelier; a factor that a name lacks was lost where the name was set, and
     what would come instead of its sine, or of itself, is what it should be. A formula that is but
-    a name lacks nothing itself.
+    a name lacks nothing itself, and a number is lost where those of the arm stand: in h, and not in
+    ``h*(qd1 + qd2)``.
     """
     assert slip.defined is not None
     name, new = slip.defined
@@ -376,10 +377,14 @@ def _is_simpler(slip: Slip, others: list[Slip], line: Line) -> bool:
                 return True
             if whole and one.kinds in (("missing term",), (_FACTOR,)):
                 return True
-            if halved and one.kinds == (_FACTOR,) and _numbers(one.corrected) < typed:
-                return False  # of -2*h the 2 that does not belong, and not h/2
-            both = slip.kinds == one.kinds == (_LOST,) and of_name
             old = {*words_in(one.replaced[0])} - _FUNCTIONS if one.replaced else set()
+            if halved and one.kinds in ((_FACTOR,), ("extra factor",)):
+                left = _numbers(one.corrected)
+                if left < typed:
+                    return False  # of -2*h the 2 that does not belong, and not h/2
+                if left > typed and name in old and old.isdisjoint(line.names.parameters):
+                    return True
+            both = slip.kinds == one.kinds == (_LOST,) and of_name
             itself = old == {name} and one.kinds != ("sign",)
             return both or itself or slip.cost < one.cost
         return len(slip.kinds) < len(one.kinds)

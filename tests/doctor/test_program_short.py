@@ -99,6 +99,66 @@ def mass(q):
 def f(q, v):
     return mass(q + 1j*h*v).imag/h
 """  # fmt: skip
+INWARD = """
+import numpy as np
+from numpy import cross
+
+def R(t):
+    return np.array([[np.cos(t), -np.sin(t), 0], [np.sin(t), np.cos(t), 0], [0, 0, 1]])
+
+def f(q, v, a):
+    m1, m2, I1, I2 = 2.0, 1.5, 2.0*.5**2/12, 1.5*.4**2/12
+    P2, C1, C2 = np.array([.5, 0, 0]), np.array([.25, 0, 0]), np.array([.2, 0, 0])
+    w1, w2 = np.array([0, 0, v[0]]), np.array([0, 0, v[0] + v[1]])
+    b1, b2 = np.array([0, 0, a[0]]), np.array([0, 0, a[0] + a[1]])
+    a1 = R(q[0]).T @ [0, 9.81, 0]
+    a2 = R(q[1]).T @ (a1 + cross(b1, P2) + cross(w1, cross(w1, P2)))
+    F1 = m1*(a1 + cross(b1, C1) + cross(w1, cross(w1, C1)))
+    F2 = m2*(a2 + cross(b2, C2) + cross(w2, cross(w2, C2)))
+    n2 = I2*b2 + cross(C2, F2)
+    n1 = I1*b1 + n2 + cross(C1, F1) + cross(P2, R(q[1]) @ F2)
+    return np.array([n1[2], n2[2]])
+"""
+SYMBOLS = """
+import numpy as np
+
+def f(q, v):
+    b = -1.5*0.5*0.4*np.sin(q[1])
+    dM = np.zeros((2, 2, 2))
+    dM[:, :, 1] = [[2*b, b], [b, 0]]
+    C = np.zeros((2, 2))
+    for i in range(2):
+        for j in range(2):
+            for k in range(2):
+                C[i, j] += 0.5*(dM[i, j, k] + dM[i, k, j] - dM[j, k, i])*v[k]
+    return C
+"""
+AXES = """
+import numpy as np
+
+def f(q):
+    b = -1.5*0.5*0.4*np.sin(q[1])
+    dM = np.zeros((2, 2, 2))
+    dM[:, :, 1] = [[2*b, b], [b, 0]]
+    return 0.5*(dM + dM.transpose(0, 2, 1) - dM.transpose(2, 0, 1))
+"""
+SLOPES = """
+import numpy as np
+r, h, k = 0.5*0.4*2.0, 0.5*0.25*0.5, 0.4*0.25*0.5
+
+def f(q):
+    s2, s3, s23 = np.sin(q[1]), np.sin(q[2]), np.sin(q[1] + q[2])
+    out = np.zeros((3, 3, 3))
+    c11, c12 = -2*r*s2 - 2*h*s23, -r*s2 - h*s23
+    c13 = -h*s23
+    out[:, :, 1] = [[c11*1.0, c12, c13], [c12, 0, 0], [c13, 0, 0]]
+    d11, d12 = -2*h*s23 - 2*k*s3, -h*s23 - 2*k*s3
+    d13 = -h*s23 - k*s3
+    d22 = -2*k*s3
+    d23 = -k*s3
+    out[:, :, 2] = [[d11, d12, d13], [d12, d22, d23], [d13, d23, 0]]
+    return out
+"""
 
 
 @pytest.mark.parametrize(
@@ -110,8 +170,23 @@ def f(q, v):
         ("puma560", "link_transforms", TABLE, "[0, sa, ca, d]", "[0, -sa, ca, d]"),
         ("spatial3r", "mass_matrix_dot", STEP, "m[i]*J.T @ J", "m[i]*J.conj().T @ J"),
         ("spatial3r", "mass_matrix_dot", STEP, "xy=0.001", "xz=0.001"),
+        ("planar2r_rods", "inverse_dynamics", INWARD, "F1) + cross(P2, R(q[1]) @ F2)", "F1)"),
+        ("planar2r", "coriolis_matrix", SYMBOLS, "dM[j, k, i]", "dM[j, i, k]"),
+        ("planar2r", "christoffel", AXES, "dM.transpose(2, 0, 1)", "dM.transpose(1, 2, 0)"),
+        ("planar3r", "mass_matrix_derivatives", SLOPES, "d22 = -2*k*s3", "d22 = -k*s3"),
     ],
-    ids=["mixed", "congruent", "height", "sign", "conjugate", "word"],
+    ids=[
+        "mixed",
+        "congruent",
+        "height",
+        "sign",
+        "conjugate",
+        "word",
+        "moment",
+        "symbol",
+        "axes",
+        "slope",
+    ],
 )
 def test_a_slip_is_told_in_its_line(robot, quantity, text, right, slip, tmp_path):
     told_in_its_line(robot, quantity, text, right, slip, tmp_path / "hand.py")

@@ -322,6 +322,9 @@ def _put_in(line: Line, place: Place, size: float) -> None:
         should_be(place.above, written, size, squares)
     if name[0] == "l":
         should_be(place, f"{size / 2:.12g}", size / 2)
+    for other, mass in line.meanings.own.items() if name[0] == "m" else ():
+        if other[0] == "m" and other != name:
+            should_be(place, f"({written} + {mass:.12g})", size + mass, 1.3)
     gravity = line.meanings.own.get("g")
     if name[0] == "m" and gravity:
         told, pieces = line.told(place, _LACKS, _LACKS)
@@ -861,6 +864,19 @@ _DECIMAL = re.compile(r"\s*[-+]?\s*(\d+\.\d*[1-9]\d*)(?![\d.eE/]|\s*/)")
 _TIMES_A_NUMBER = re.compile(r"\s*[*·]\s*\d")
 
 
+def _is_beside_a_square(place: Place) -> bool:
+    """Whether it is a product of two next to a square, as the legs of a triangle are: l*sin(q)."""
+    node, above = place.node, None if place.above is None else place.above.node
+    if not (isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult)):
+        return False
+    if not is_sum(above) or not all(
+        isinstance(x, ast.Name | ast.Call) for x in (node.left, node.right)
+    ):
+        return False
+    beside = above.left if node is above.right else above.right
+    return isinstance(beside, ast.BinOp) and isinstance(beside.op, ast.Pow)
+
+
 def _as_factor(line: Line, place: Place) -> None:
     """Squares, and factors that are missing in front of a term."""
     node = place.node
@@ -869,7 +885,8 @@ def _as_factor(line: Line, place: Place) -> None:
     wrapped = f"({piece})" if isinstance(node, (ast.BinOp, ast.UnaryOp)) else piece
     share = isinstance(node, ast.BinOp) and not whole and _in_brackets(line, place)
     share = share and bool(words_in(piece)) and piece[:1] != "("  # (l1/2), and no \\frac
-    if (isinstance(node, (ast.Name, ast.Call)) or whole or share) and not _is_base(place):
+    leg = _is_beside_a_square(place)
+    if (isinstance(node, (ast.Name, ast.Call)) or whole or share or leg) and not _is_base(place):
         rates = whole and all(_is_rate(line, word) for word in words_in(piece))
         cost = 1.4 if whole and not rates else 1.1  # a link's rate is squared as a joint's
         closed = re.match(r"\s*\)", line.source[place.span[1] :])

@@ -60,6 +60,10 @@ _CENTRES = ("r", "c", "lc", "rc", "ac", "lg", "rg", "com")
 """Names for the distance of a centre of mass from its joint."""
 _OF_A_CENTRE = 1.0
 """Cost of the half of a length for all of it, where it is called as a centre's distance."""
+_PUT_DOWN = 0.06
+"""What a factor costs more of a name in a list: it is lost where that is worked out."""
+_DOUBLES, _REMAINDER = 0.1, 1.05
+"""What a term more costs more that doubles another; cost of 1 - x for x, where that stands."""
 _MIXED_SQUARE = 1.07
 """Cost of a product of two rates for a square, or of a square for it."""
 _ENTRY = 1.13
@@ -149,6 +153,9 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     of_method = isinstance(parent, ast.Attribute) and parent.attr != "dot"  # J.dot(w) is a product
     if shape and not literal and not written and not of_method:
         yield from _matrices(here, scope, shape)
+    for text, piece in scope.pieces_here(shape).items() if isinstance(node, ast.Name) else ():
+        if text in (f"1 - {node.id}", f"1.0 - {node.id}"):
+            yield here.instead(piece, "missing term", _REMAINDER)
     row = len(shape) == 1 and isinstance(node, ast.Name) and scope.has_numpy
     multiplied = isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.Mult)
     summed = isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.MatMult)
@@ -233,6 +240,7 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
             cost = _KEPT if _keeps(parent, node) else cost
             cost = _MIXED if value == 2 and _is_mixed(here) else cost
             cost = _OF_A_CENTRE if value < 1 and _is_called_a_centre(here) else cost
+            cost += _PUT_DOWN * (isinstance(parent, ast.List) and isinstance(node, ast.Name))
             yield here.instead(times, "factor", cost + _OF_A_LIST * used)
         if summand and isinstance(node, ast.Name | ast.Subscript) and scope.divisors & _MILLIMETRES:
             yield here.instead(chains.times(number(1000), node), "factor", _IN_MILLIMETRES)
@@ -578,17 +586,30 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
                 yield here.instead(ast.BinOp(scalar, ast.Add(), node), "missing term", _AS_THERE)
             dear += _OF_ANOTHER_KIND * (text[0] != own[0])
             rest = _REST if text[0] in "lLar" and _of_one_link(text, own) else 1.05
+            dear += _DOUBLES * _doubles(here, scalar, scope)
             for op, cost in ((ast.Add(), 1.0), (ast.Sub(), rest)):
                 new = ast.BinOp(node, op, scalar)
                 yield here.instead(new, "missing term", cost + dear)
 
 
+def _doubles(here: Here, other: ast.expr, scope: Scope) -> bool:
+    """Whether what is added has the same values, as the statement has it elsewhere."""
+    text, own = text_of(other), scope.observed.of(here.node)
+    alike = (x for x in nodes(statement_of(here.above)) if isinstance(x, ast.Name | ast.Subscript))
+    seen = (scope.observed.of(x) for x in alike if text_of(x) == text)
+    found = next((one for one in seen if one is not None), None)
+    if own is None or found is None or not own.values:
+        return False
+    return all(np.array_equal(x, y) for x, y in zip(own.values, found.values, strict=False))
+
+
 def _beyond_the_origin(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """A coordinate of a point of the link for that of its origin: ``T[2, 3] + T[2, :3] @ c``."""
     node = here.node
-    if not isinstance(node, ast.Subscript) or not isinstance(node.slice, ast.Tuple):
+    key = node.slice if isinstance(node, ast.Subscript) else None
+    if not isinstance(node, ast.Subscript) or not isinstance(key, ast.Tuple) or len(key.elts) != 2:
         return
-    row, column = node.slice.elts
+    row, column = key.elts
     if getattr(column, "value", None) not in (3, -1) or not scope.is_pose(node.value):
         return
     axes = ast.Tuple([row, ast.Slice(None, number(3))], ast.Load())
@@ -799,6 +820,7 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
         dear = min(scope.dear(piece), near)
         follows = follow(node, piece)
         more = 0.0 if follows and not zero else dear + zero  # m4 behind m3
+        more += _DOUBLES * _doubles(here, piece, scope)
         less = 0.0 if follows and entry else dear  # tau[2] beside tau[1], in a row of differences
         for op, cost in ((ast.Add(), 1.06 + more), (ast.Sub(), 1.08 + less)):
             yield here.instead(ast.BinOp(node, op, piece), "missing term", cost)

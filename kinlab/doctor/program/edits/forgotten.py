@@ -396,12 +396,27 @@ def _moments(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     for piece in scope.pieces_here(_VECTOR).values():
         if isinstance(piece, ast.BinOp) and isinstance(piece.op, ast.MatMult):
             forces += [piece] if _begins(piece.right, _FORCES) else []
+    if any(map(scope.crosses, nodes(here.node))):  # it is a sum of moments
+        plain = [one for one in forces if not isinstance(one, ast.BinOp)]
+        turns = _rotations(scope)
+        forces += [ast.BinOp(turn, ast.MatMult(), one) for turn in turns for one in plain]
     for force in forces:
         for text, arm in arms:
             unused = text in scope.unused or not scope.unused.isdisjoint(names(arm))
             moment = ast.Call(scope.cross, [arm, force], [])
             new = ast.BinOp(here.node, ast.Add(), moment)
             yield here.instead(new, "missing term", 1.1 if unused else 1.14)
+
+
+def _rotations(scope: Scope) -> list[ast.expr]:
+    """Rotations that are worked out where they are used, and their transposes: ``R(q[1]).T``."""
+    found: dict[str, ast.expr] = {}
+    for piece in scope.pieces_here((3, 3)).values():
+        one = piece.value if isinstance(piece, ast.Attribute) and piece.attr == "T" else piece
+        if isinstance(one, ast.Call) and isinstance(one.func, ast.Name):
+            found[text_of(one)] = one
+            found[f"{text_of(one)}.T"] = ast.Attribute(one, "T", ast.Load())
+    return [*found.values()][:_FEW]
 
 
 def _of_twists(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

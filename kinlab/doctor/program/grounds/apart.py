@@ -561,10 +561,12 @@ class _Reader:
 
     def _tie_alike(self, kind: str, group: list[tuple[ProgramNumber, list[int]]]) -> None:
         """Numbers of the arm's that are one, each of which any of several may be: a2 and d4."""
-        first, *others = dict.fromkeys(
-            self.cells[k].which for _one, left in group for k in left if self.cells[k].kind == kind
-        )
-        for which in others:
+        each = {
+            tuple(self.cells[k].which for k in left if self.cells[k].kind == kind)
+            for _one, left in group
+        }
+        first, *others = dict.fromkeys(min(each))
+        for which in others if len(each) == 1 else ():
             if self.tied.get(which, which) == which:
                 self.tied[which] = self.tied.get(first, first)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
-from itertools import combinations
+from itertools import combinations, permutations
 from types import FunctionType
 
 from kinlab.doctor.bytecode.syntax import called, names, nodes, pieces, text_of
@@ -37,6 +37,8 @@ _ARGUMENTS, _APART = 4, 0.03
 """The same of arguments; what it costs more of those that do not stand side by side."""
 _CONJUGATES, _CONJUGATE = ("conj", "conjugate"), 1.04
 """Functions that conjugate, and the cost of one that spoils a complex step."""
+_AXES_OF_THREE, _ORDER = (0, 1, 2), 1.06
+"""The axes of Christoffel's symbols, and the cost of another order."""
 _WORD = 1.04
 """Cost of another word of a call."""
 _ARCS = ("arcsin", "asin", "arccos", "acos")
@@ -137,6 +139,8 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
         of = node.args[0] if node.args else getattr(node.func, "value", None)
         if isinstance(of, ast.expr):
             yield here.instead(of, "function", _CONJUGATE)
+    if name == "transpose" and len(node.args) == len(_AXES_OF_THREE):
+        yield from _other_axes(here)
     yield from _other_words(here, scope)
     for word in node.keywords:
         axes = range(max(_AXES, len(observed.shape(node) or ())))
@@ -301,6 +305,14 @@ def _is_typed_in(node: ast.expr) -> bool:
     """Whether nothing but numbers stand there."""
     plain = ast.List | ast.Tuple | ast.Constant | ast.UnaryOp | ast.unaryop | ast.expr_context
     return all(isinstance(one, plain) for one in nodes(node))
+
+
+def _other_axes(here: Here) -> Iterator[ProgramEdit]:
+    """Another order of axes: ``dM.transpose(2, 0, 1)`` for ``dM.transpose(1, 2, 0)``."""
+    own = tuple(getattr(one, "value", None) for one in here.node.args)
+    for order in permutations(_AXES_OF_THREE):
+        if {*own} == {*order} and order != own:
+            yield here.within(here.node, "args", [number(k) for k in order], "index", _ORDER)
 
 
 def _other_words(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

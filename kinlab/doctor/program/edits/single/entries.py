@@ -38,6 +38,8 @@ _BESIDE = 1.06
 
 _OF_THE_SUM = 1.06
 """Cost of a row that is a sum, for the number in it."""
+_INDICES = 1.06
+"""Cost of another order of three indices: of Christoffel's symbols."""
 
 
 def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
@@ -306,7 +308,9 @@ def of_keys(here: Here, node: ast.Subscript, cost: float) -> Iterator[ProgramEdi
         swapped = ast.Tuple([keys[1], keys[0]], ast.Load())
         yield here.within(node, "slice", swapped, "transposed", cost)
     if len(keys) == _THREE and len({ast.dump(key) for key in keys}) > 1:
+        counted = all(isinstance(key, ast.Name) for key in keys)  # one index for another
+        cost = _INDICES if counted else 1.12
         for order in [*permutations(range(_THREE))][1:]:
             other = ast.Tuple([keys[k] for k in order], ast.Load())
             if ast.dump(other) != ast.dump(node.slice):
-                yield here.within(node, "slice", other, "index", 1.12)
+                yield here.within(node, "slice", other, "index", cost)
