@@ -50,6 +50,7 @@ _TURNS, _SHARE = 6, 0.01
 """Steps in which a number is found, and the share by which it is moved for its slope."""
 _LOST, _MISSING, _FACTOR = "missing factor", "missing term", "factor"
 _NUMBER = re.compile(r"(?<![\w.])\d[\d.]*(?![\w.])")
+_HALF = re.compile(r"/ *2\b|\b0?\.5\b|\b1/2\b")
 _RATE = re.compile(r"qd{1,2}\d+")
 _FUNCTIONS = {"sin", "cos", "tan"}
 _UNDONE = {"sign", "transposed", "row order", "inverse", "rotation transposed", "joint order"}
@@ -63,7 +64,7 @@ def slips_in(
     """Causes that are slips of the pen in the entries that are off, or what is known of some."""
     defined: list[Slip] = []
     every = off
-    if (mistyped := _mistyped(case, off, written)) is not None:
+    if (mistyped := _mistyped(case, off, written) or _misnamed(case, off, written)) is not None:
         defined.append(mistyped)
         written = _defined_otherwise(case, written, mistyped)
         off = _still_off(case, every, written)
@@ -130,6 +131,50 @@ def _mistyped(case: Case, off: list[AnswerEntry], written: dict[str, Written]) -
     values = _with_number(written, name, number)[off[0].label].values(here)
     error = off[0].error(values, off[0].engine) if not left else 0.0
     return Slip(name, ("number",), said, new, 1.0, values, True, error=error, defined=(name, new))
+
+
+def _misnamed(case: Case, off: list[AnswerEntry], written: dict[str, Written]) -> Slip | None:
+    """A name that is set to another of the arm's than it is called: ``lc3 = l3``, l2 = 0.325 where
+    that is l1, and the rate of a link that is a joint's alone, ``omega = qd2``."""
+    if any(entry.label not in written for entry in off):
+        return None
+    here = _numbers_here(case)
+    for name, (old, new, kind) in _called_otherwise(case, off, written).items():
+        put = {label: _renamed(text, name, new) for label, text in written.items()}
+        if _still_off(case, off, put):
+            continue
+        told = _("{old} should be {new}").format(old=old, new=new)
+        said = _("{entry}: {slip} ({kind})").format(entry=name, slip=told, kind=_(kind))
+        values = put[off[0].label].values(here)
+        error = off[0].error(values, off[0].engine)
+        return Slip(name, (kind,), said, new, 1.0, values, True, error=error, defined=(name, new))
+    return None
+
+
+def _renamed(text: Written, name: str, new: str) -> Written:
+    """A text with another meaning of one of its names, which is no number's of the arm any more."""
+    known = {word: node for word, node in text.known.items() if word != name}
+    return replace(text, symbols={**text.symbols, name: new}, known=known)
+
+
+def _called_otherwise(
+    case: Case, off: list[AnswerEntry], written: dict[str, Written]
+) -> dict[str, tuple[str, str, str]]:
+    """Names, each with what it is set to, what it is rather, and what kind of slip that is."""
+    found: dict[str, tuple[str, str, str]] = {}
+    for text in (written[entry.label] for entry in off[:_PATIENCE]):
+        for name, meant in text.symbols.items():
+            rate = _RATE.fullmatch(str(canonical(meant).value)) if meant.isidentifier() else None
+            own, other = _number_of(case, name), _as_number(meant) or _number_of(case, meant)
+            if own and other and abs(own - other) > TOLERANCES.formula_agrees * abs(own):
+                half = meant.isidentifier() and other == 2 * own
+                new = f"{meant}/2" if half else f"{own:.10g}" if _as_number(meant) else name
+                found[name] = (meant, new, "factor" if half else "number")
+            elif rate is not None and rate[0].startswith("qd") and not rate[0].startswith("qdd"):
+                number = int(rate[0][2:])
+                others = [meant.replace(str(number), str(k + 1)) for k in range(number)]
+                found[name] = (meant, " + ".join(others), "missing term")
+    return {name: one for name, one in found.items() if one[1] not in (name, one[0])}
 
 
 def _solved(
@@ -358,9 +403,9 @@ def _is_simpler(slip: Slip, others: list[Slip], line: Line) -> bool:
     """Whether a slip in a definition says in fewer words what is wrong than others of the line.
 
     Of as many words the likelier; a factor that a name lacks was lost where the name was set, and
-    what would come instead of its sine, or of itself, is what it should be. A formula that is but
-    a name lacks nothing itself, and a number is lost where those of the arm stand: in h, and not in
-    ``h*(qd1 + qd2)``.
+    what would come instead of its sine, or of itself, is what it should be. A formula that is only
+    a name lacks nothing itself; a half is lost where the numbers of the arm stand: in h, and not
+    in ``h*(qd1 + qd2)``.
     """
     assert slip.defined is not None
     name, new = slip.defined
@@ -382,8 +427,9 @@ def _is_simpler(slip: Slip, others: list[Slip], line: Line) -> bool:
                 left = _numbers(one.corrected)
                 if left < typed:
                     return False  # of -2*h the 2 that does not belong, and not h/2
-                if left > typed and name in old and old.isdisjoint(line.names.parameters):
-                    return True
+                half = _HALF.search(new) and not _HALF.search(line.text.symbols[name])
+                if half and left > typed and name in old:
+                    return old.isdisjoint(line.names.parameters) or slip.cost < one.cost
             both = slip.kinds == one.kinds == (_LOST,) and of_name
             itself = old == {name} and one.kinds != ("sign",)
             return both or itself or slip.cost < one.cost
@@ -458,7 +504,7 @@ def _defined_otherwise(case: Case, written: dict[str, Written], slip: Slip) -> d
     books = {word: as_text(total) for word in words_in(new) if (total := meant.get(word))}
     more = {word: told for word, told in books.items() if told != word}
     return {
-        label: replace(text, symbols={**more, **text.symbols, name: new})
+        label: replace(_renamed(text, name, new), symbols={**more, **text.symbols, name: new})
         for label, text in written.items()
     }
 

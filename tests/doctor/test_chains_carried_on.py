@@ -106,8 +106,56 @@ def test_numbers_that_are_put_in_are_what_they_stand_for(robot, entry, text, sai
             "M12 = I2 + m2*lc2^2 + 2*m2*l1*lc2*c2",
             "M12: the factor 2 does not belong in 2*m2*l1*lc2*c2",
         ),
+        (
+            "planar2r",
+            "M11",
+            "M11 = m1*l1^2 + m2*((l1 + l2*cos(q2))^2 + l2*sin(q2))",
+            "M11: l2*sin(q2) should be (l2*sin(q2))^2",
+        ),
+        (
+            "planar2r_rods",
+            "y",
+            "y = 0.5*sin(q1) + 0.4*(sin(q1) + sin(q2))",
+            "y: sin(q1) + sin(q2) should be sin(q1 + q2)",
+        ),
     ],
-    ids=["a product for a sum", "a square", "another entry is right", "a 2 too many"],
+    ids=[
+        "a product for a sum",
+        "a square",
+        "another entry is right",
+        "a 2 too many",
+        "the square of a product",
+        "the sine of a sum",
+    ],
 )
 def test_the_likelier_of_two_repairs_is_told(robot, entry, text, said):
     assert kl.diagnose(robot, entry, text).sentence.startswith(said)
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "text", "said"),
+    [
+        ("planar2r_rods", "C12", "C12 = h*(qd1 + qd2), h = -m2*l1*l2*s2", "h: -m2*l1*l2*s2 should be -m2*l1*l2*s2/2"),
+        ("planar2r", "M11", "M11 = a + b*c2 with a = (m1 + m2)*l1^2 + m2*l2^2, b = m2*l1*l2", "M11: b*c2 should be 2*b*c2"),
+        ("planar2r", "C12", "C12 = -h*(qd1 + qd2)/2 with h = m2*l1*l2*s2", "C12: /2 does not belong in"),
+        ("planar3r", "M33", "M33 = I3 + m3*lc3^2, with I3 = m3*l3^2/12 and lc3 = l3", "lc3: l3 should be l3/2"),
+        ("scara", "J11", "J11 = -l1*sin(q1) - l2*sin(q1+q2) with l1 = 0.325, l2 = 0.325", "l2: 0.325 should be 0.275"),
+        (
+            "planar2r_rods",
+            "T",
+            "T = m1*l1^2*qd1^2/6 + m2*l1^2*qd1^2/2 + m2*l2^2*w^2/6 + m2*l1*l2*c2*qd1*w/2 with w = qd2",
+            "w: qd2 should be qd1 + qd2",
+        ),
+    ],
+    ids=["a half", "a 2", "a half too many", "a centre", "a number", "a rate"],
+)  # fmt: skip
+def test_a_name_is_put_right_where_it_is_set(robot, entry, text, said):
+    """A half is lost in a definition, the 2 of a mixed term in the formula."""
+    assert kl.diagnose(robot, entry, text).sentence.startswith(said)
+
+
+@pytest.mark.parametrize("name", ["det J", "det(J)", "detJ", "det J(q)", "det of J", "|J|"])
+def test_a_determinant_by_any_name(name):
+    assert kl.diagnose("planar2r", "det", f"{name} = l1*l2*sin(q2)").agrees
+    found = kl.diagnose("planar2r", "det", f"{name} = l1*l2*cos(q2)")
+    assert found.sentence.startswith("det: cos(q2) should be sin(q2)")

@@ -80,6 +80,11 @@ def study_definition(line: Line) -> None:
             if angle != node:
                 _node(line, line.root, angle, "argument", 1.2)
         return
+    if node.op == "sym" and _is_rate(line, line.source.strip()):  # that of a link: of all before
+        for count in range(2, line.names.n + 1):
+            rates = [tree.sym(f"qd{k + 1}") for k in range(count)]
+            if node in rates:
+                _node(line, line.root, tree.add(*rates), "missing term", 1.2)
     end, told = len(line.source), N_("the term {term} is missing")
     there = {*words_in(line.source)}
     own = {name: replace(line.text, text=name).values(line.at) for name in line.text.symbols}
@@ -320,8 +325,9 @@ def _put_in(line: Line, place: Place, size: float) -> None:
     should_be(place, f"{written}**2", size**2, squares)
     if place.above is not None and _is_base(place):
         should_be(place.above, written, size, squares)
-    if name[0] == "l":
-        should_be(place, f"{size / 2:.12g}", size / 2)
+    if name[0] == "l":  # of l2*l3 the last link's is rather its centre's
+        further = 0.01 * int(name[1:]) if name[1:].isdigit() else 0.0
+        should_be(place, f"{size / 2:.12g}", size / 2, 1.2 - further)
     for other, mass in line.meanings.own.items() if name[0] == "m" else ():
         if other[0] == "m" and other != name:
             should_be(place, f"({written} + {mass:.12g})", size + mass, 1.3)
@@ -444,6 +450,8 @@ def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
         _enclosed_further(line, place, at)
         _into_the_angle(line, place)
         _laid_open(line, place)
+        if plus:
+            _wave_of_the_sum(line, place, left, right)
         return
     if isinstance(node.op, ast.Pow):
         base = left.value
@@ -782,6 +790,13 @@ def _is_rate(line: Line, word: str) -> bool:
     """Whether a name is a joint's rate."""
     found = _MOTION.fullmatch(str(line.meaning(word).value))
     return found is not None and found[1] == "qd"
+
+
+def _wave_of_the_sum(line: Line, place: Place, left: Place, right: Place) -> None:
+    """The sine or cosine of a sum as the sum of two: ``sin(q1) + sin(q2)`` for ``sin(q1 + q2)``."""
+    one, two = _as_wave(line, left), _as_wave(line, right)
+    if one is not None and two is not None and one.op == two.op and one.args != two.args:
+        _node(line, place, tree.call(one.op, tree.add(*one.args, *two.args)), "argument", 1.2)
 
 
 def _linear(line: Line, place: Place, left: Place, right: Place) -> None:

@@ -61,6 +61,7 @@ _OF_J = re.compile(
     r"\{?\s*(?:\\(?:mathbf|boldsymbol|mathrm|bm)\s*\{)?\s*J\s*\}?(?:\s*\(\s*\\?\w+\s*\))?\s*\}?\s*"
     r"(?:\\right)?\s*[)|]?\s*(?==)"
 )
+_PLAIN_DET = re.compile(r"^\s*det\s+(?:of\s+)?J(?:\s*\(\s*\w+\s*\))?\s*(?==)")
 _TORQUE = re.compile(r"^(\s*\$*\s*)(?:\\Gamma|Γ|Gamma)_?(\{\d\}|\d|[₁-₉])?\s*(?==)")
 _ROOM = re.compile(
     r"\\(?:tag\*?|label)\s*\{[^{}]{0,60}\}|"
@@ -86,7 +87,7 @@ def undressed(text: str, entry: str) -> str:
         text = _TORQUE.sub(lambda m: f"{m[1]}tau{m[2] or ''} ".replace("tau{", "tau_{"), text)
     if "det" in entry:
         chained = text.count("=") > 1 or "{" in text.partition("=")[0]
-        text = _OF_J.sub("det ", text) if chained else text
+        text = _OF_J.sub("det ", text) if chained else _PLAIN_DET.sub("det ", text)
         text = _DETERMINANT.sub(lambda m: _determinant(m[1] or m[2]) or m[0], text)
     text = _FIRST.sub(lambda m: "$" * m[0].count("$"), text)
     text = _with_waves(text)
