@@ -593,14 +593,20 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
 
 
 def _doubles(here: Here, other: ast.expr, scope: Scope) -> bool:
-    """Whether what is added has the same values, as the statement has it elsewhere."""
+    """Whether what is added has the same values, as the statement has it elsewhere.
+
+    Numbers that stay, as all masses of a unit arm, say nothing.
+    """
     text, own = text_of(other), scope.observed.of(here.node)
     alike = (x for x in nodes(statement_of(here.above)) if isinstance(x, ast.Name | ast.Subscript))
     seen = (scope.observed.of(x) for x in alike if text_of(x) == text)
     found = next((one for one in seen if one is not None), None)
     if own is None or found is None or not own.values:
         return False
-    return all(np.array_equal(x, y) for x, y in zip(own.values, found.values, strict=False))
+    moves = any(not np.array_equal(one, own.values[0]) for one in own.values)
+    return moves and all(
+        np.array_equal(x, y) for x, y in zip(own.values, found.values, strict=False)
+    )
 
 
 def _beyond_the_origin(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
