@@ -290,6 +290,8 @@ def _has_the_values_of(one: Diagnosis, other: Diagnosis) -> bool:
     """Whether two formulas have one value at their worst states, to rounded numbers."""
     if one.hand is None or other.hand is None or np.shape(one.hand) != np.shape(other.hand):
         return False
+    if not np.isfinite(other.hand).all():
+        return False
     near = 1e-3 * np.abs(other.hand).max(initial=0.0)
     return bool(np.allclose(one.hand, other.hand, rtol=0.0, atol=near))
 
