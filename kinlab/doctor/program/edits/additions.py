@@ -54,7 +54,7 @@ _OF_AN_ANGLE = 0.1
 """What a factor costs more that is an angle: of these sines and cosines are factors."""
 _MIXED = 0.96
 """Cost of a lost 2 in the mixed term of a square: a length for a distance is as soon mistaken."""
-_BEYOND = 1.02
+_FROM_ITS_ORIGIN = 1.08
 """Cost of a link's point for its origin."""
 _CENTRES = ("r", "c", "lc", "rc", "ac", "lg", "rg", "com")
 """Names for the distance of a centre of mass from its joint."""
@@ -622,7 +622,7 @@ def _beyond_the_origin(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     along = ast.Subscript(node.value, axes, ast.Load())
     for _text, point in scope.pieces_here((3,)).items():
         new = ast.BinOp(node, ast.Add(), ast.BinOp(along, ast.MatMult(), point))
-        yield here.instead(new, "missing term", _BEYOND + scope.dear(point))
+        yield here.instead(new, "missing term", _FROM_ITS_ORIGIN + scope.dear(point))
 
 
 def _squares_and_products(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
