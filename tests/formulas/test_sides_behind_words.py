@@ -385,6 +385,16 @@ def test_a_comment_that_says_more_than_the_part_is_told(comment, sign):
     assert kl.diagnose("planar2r", "x", f"{text}  {sign} link 2").remarks == ()
 
 
+@pytest.mark.parametrize("comment", ["without link 1", "ohne Glied 1", "only link 2", "只看连杆 2"])
+def test_a_comment_that_a_part_stands_alone_is_not_dropped(comment):
+    """Of link 1, or of nothing but link 2, the sum may be no tool's position: that is told."""
+    text = f"x = l1*c1\nx += l2*c12  # {comment}"
+    try:
+        assert kl.diagnose("planar2r", "x", text).remarks
+    except ExpressionError as refused:
+        assert comment in str(refused)
+
+
 def test_a_definition_whose_name_is_of_two_words():
     """It ended in a SyntaxError: the name was read as a formula."""
     assert kl.diagnose("planar2r", "M22", "det J = l1*l2*s2\nM22 = m2*l2^2").agrees

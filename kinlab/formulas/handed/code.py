@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from itertools import islice
 
-from kinlab.formulas.language.vocabulary import is_listed, is_of_a_part, words_of
+from kinlab.formulas.language.vocabulary import is_listed, names_a_part, words_of
 from kinlab.formulas.signs.brackets import closes, outside, parts_at
 from kinlab.formulas.signs.refusals import refused
 from kinlab.host.language import N_
@@ -158,7 +158,7 @@ def with_definitions(text: str) -> str:
 
 def _is_of_a_part(comment: str) -> bool:
     """Whether a comment says of which part of the arm a line is, and nothing else."""
-    return not re.search("[=<>*^]", comment) and all(map(is_of_a_part, words_of(comment)))
+    return not re.search("[=<>*^]", comment) and all(map(names_a_part, words_of(comment)))
 
 
 _ADDED = r"[A-Za-z]\w*(?:\[[\d, ]+\]|\([\d, ]+\))?"

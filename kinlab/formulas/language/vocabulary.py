@@ -78,6 +78,11 @@ def leads_over(word: str) -> bool:
 
 def is_of_a_part(word: str) -> bool:
     """Whether a word says, with others such, of which part of the arm an equation is."""
+    return _is_one_of(word, _parts().union(_lists()["parts"]["alone"].split()))
+
+
+def names_a_part(word: str) -> bool:
+    """Whether a word names, with others such, a part of the arm: not that it stands alone."""
     return _is_one_of(word, _parts())
 
 
