@@ -279,11 +279,15 @@ def _of_chain(parts: list[Diagnosis]) -> Diagnosis:
     made = min(reversed(alike), key=lambda one: len(one.causes[0].kinds), default=wrong[0])
     notes = list[str]()
     if made.causes and made.causes[0].sentence not in [x.sentence for x in wrong[0].causes[:1]]:
-        notes += [_("the rest of the chain of equalities carries it on")]
+        notes += [_("another side of the chain of equalities carries it on")]
     if len(wrong) < len(parts):
         notes += [_("another part of the chain of equalities is right")]
         made = replace(made, proved=(*made.proved, notes[-1]))
     return _also_said(made, (*notes,)) if made.causes else made
+
+
+_ROUNDED = 1e-3
+"""How far a number that is carried on may be rounded, of the largest."""
 
 
 def _has_the_values_of(one: Diagnosis, other: Diagnosis) -> bool:
@@ -292,7 +296,7 @@ def _has_the_values_of(one: Diagnosis, other: Diagnosis) -> bool:
         return False
     if not np.isfinite(other.hand).all():
         return False
-    near = 1e-3 * np.abs(other.hand).max(initial=0.0)
+    near = _ROUNDED * np.abs(other.hand).max(initial=0.0)
     return bool(np.allclose(one.hand, other.hand, rtol=0.0, atol=near))
 
 

@@ -50,7 +50,7 @@ _TURNS, _SHARE = 6, 0.01
 """Steps in which a number is found, and the share by which it is moved for its slope."""
 _LOST, _MISSING, _FACTOR = "missing factor", "missing term", "factor"
 _NUMBER = re.compile(r"(?<![\w.])\d[\d.]*(?![\w.])")
-_HALF = re.compile(r"/ *2\b|\b0?\.5\b|\b1/2\b")
+_HALF = re.compile(r"/ *2\b|\b0?\.5\b")
 _RATE = re.compile(r"qd{1,2}\d+")
 _FUNCTIONS = {"sin", "cos", "tan"}
 _UNDONE = {"sign", "transposed", "row order", "inverse", "rotation transposed", "joint order"}
@@ -125,12 +125,16 @@ def _mistyped(case: Case, off: list[AnswerEntry], written: dict[str, Written]) -
     left, name, number = min(found, default=(0, "", 0.0))
     if sum(one[0] == left for one in found) != 1:
         return None
-    new = f"{number:.10g}"
-    told = _("{old} should be {new}").format(old=given[name], new=new)
-    said = _("{entry}: {slip} ({kind})").format(entry=name, slip=told, kind=_("number"))
     values = _with_number(written, name, number)[off[0].label].values(here)
     error = off[0].error(values, off[0].engine) if not left else 0.0
-    return Slip(name, ("number",), said, new, 1.0, values, True, error=error, defined=(name, new))
+    return _of_name(name, given[name], f"{number:.10g}", "number", values, error)
+
+
+def _of_name(name: str, old: str, new: str, kind: str, values: Array, error: float) -> Slip:
+    """A slip in what a name is set to."""
+    told = _("{old} should be {new}").format(old=old, new=new)
+    said = _("{entry}: {slip} ({kind})").format(entry=name, slip=told, kind=_(kind))
+    return Slip(name, (kind,), said, new, 1.0, values, True, error=error, defined=(name, new))
 
 
 def _misnamed(case: Case, off: list[AnswerEntry], written: dict[str, Written]) -> Slip | None:
@@ -141,13 +145,9 @@ def _misnamed(case: Case, off: list[AnswerEntry], written: dict[str, Written]) -
     here = _numbers_here(case)
     for name, (old, new, kind) in _called_otherwise(case, off, written).items():
         put = {label: _renamed(text, name, new) for label, text in written.items()}
-        if _still_off(case, off, put):
-            continue
-        told = _("{old} should be {new}").format(old=old, new=new)
-        said = _("{entry}: {slip} ({kind})").format(entry=name, slip=told, kind=_(kind))
-        values = put[off[0].label].values(here)
-        error = off[0].error(values, off[0].engine)
-        return Slip(name, (kind,), said, new, 1.0, values, True, error=error, defined=(name, new))
+        if not _still_off(case, off, put):
+            values = put[off[0].label].values(here)
+            return _of_name(name, old, new, kind, values, off[0].error(values, off[0].engine))
     return None
 
 
@@ -164,15 +164,14 @@ def _called_otherwise(
     found: dict[str, tuple[str, str, str]] = {}
     for text in (written[entry.label] for entry in off[:_PATIENCE]):
         for name, meant in text.symbols.items():
-            rate = _RATE.fullmatch(str(canonical(meant).value)) if meant.isidentifier() else None
+            alone = str(canonical(meant).value) if meant.isidentifier() else ""
             own, other = _number_of(case, name), _as_number(meant) or _number_of(case, meant)
             if own and other and abs(own - other) > TOLERANCES.formula_agrees * abs(own):
-                half = meant.isidentifier() and other == 2 * own
+                half = alone and other == 2 * own
                 new = f"{meant}/2" if half else f"{own:.10g}" if _as_number(meant) else name
                 found[name] = (meant, new, "factor" if half else "number")
-            elif rate is not None and rate[0].startswith("qd") and not rate[0].startswith("qdd"):
-                number = int(rate[0][2:])
-                others = [meant.replace(str(number), str(k + 1)) for k in range(number)]
+            elif rate := re.fullmatch(r"qd(\d+)", alone):
+                others = [meant.replace(rate[1], str(k + 1)) for k in range(int(rate[1]))]
                 found[name] = (meant, " + ".join(others), "missing term")
     return {name: one for name, one in found.items() if one[1] not in (name, one[0])}
 
@@ -199,10 +198,7 @@ def _solved(
 
 def _with_number(written: dict[str, Written], name: str, number: float) -> dict[str, Written]:
     """The texts with another number for one of the writer's names."""
-    return {
-        label: replace(text, symbols={**text.symbols, name: repr(number)})
-        for label, text in written.items()
-    }
+    return {label: _renamed(text, name, repr(number)) for label, text in written.items()}
 
 
 def _as_number(text: str) -> float:
@@ -343,6 +339,8 @@ def _definitions(
     if derived is None or any(entry.label not in written for entry in off):
         return
     wrong = {entry.label for entry in every}
+    named = isinstance(derived, Derivation) and any(x.definitions for x in written.values())
+    whole = case.engine(case.robot, case.arguments) if named else np.zeros(0)
     sound = {x for label, text in written.items() if label not in wrong for x in text.definitions}
     plainest = sorted(off, key=lambda entry: len(written[entry.label].definitions))
     for entry in plainest[:_PATIENCE]:
@@ -354,7 +352,7 @@ def _definitions(
             if isinstance(derived, Derivation):
                 names = [x for x in names if not stands_so(line.text, x, derived.arm.words)]
                 names = [x for x in names if not _is_a_moment_so(case, told, x)]
-                names = [x for x in names if not _is_an_entry(case, told, x)]
+                names = [x for x in names if not _is_an_entry(case, told, x, whole)]
             if names:
                 yield entry, Definitions(line, told, here, names)
 
@@ -371,14 +369,13 @@ def _is_a_moment_so(case: Case, text: Written, name: str) -> bool:
     return bool(np.max(np.abs(value - number)) <= TOLERANCES.formula_agrees * abs(number))
 
 
-def _is_an_entry(case: Case, text: Written, name: str) -> bool:
+def _is_an_entry(case: Case, text: Written, name: str, whole: Array) -> bool:
     """Whether a name is explained as what some entry is: M22 of ``M12 = M22 + ...``.
 
     A number of the arm's is none: ``I2 = m2*l2^2/3`` is a slip, though M22 is that.
     """
     if _number_of(case, name):
         return False
-    whole = case.engine(case.robot, case.arguments)
     entries = whole.reshape(len(whole), -1).T
     try:
         value = np.broadcast_to(text.definition(name).values(_numbers_here(case)), len(whole))

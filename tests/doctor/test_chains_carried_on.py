@@ -9,7 +9,7 @@ import pytest
 
 import kinlab as kl
 
-CARRIED = "the rest of the chain of equalities carries it on"
+CARRIED = "another side of the chain of equalities carries it on"
 
 
 @pytest.mark.parametrize(

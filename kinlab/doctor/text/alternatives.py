@@ -80,11 +80,6 @@ def study_definition(line: Line) -> None:
             if angle != node:
                 _node(line, line.root, angle, "argument", 1.2)
         return
-    if node.op == "sym" and _is_rate(line, line.source.strip()):  # that of a link: of all before
-        for count in range(2, line.names.n + 1):
-            rates = [tree.sym(f"qd{k + 1}") for k in range(count)]
-            if node in rates:
-                _node(line, line.root, tree.add(*rates), "missing term", 1.2)
     end, told = len(line.source), N_("the term {term} is missing")
     there = {*words_in(line.source)}
     own = {name: replace(line.text, text=name).values(line.at) for name in line.text.symbols}
@@ -195,19 +190,22 @@ def _halves_lengths(line: Line) -> bool:
 
 def _beside_a_length(line: Line, place: Place) -> bool:
     """Whether a length stands beside another link's without a 2, which is lost there as often."""
-    name = line.segment(place)
-    while place.above is not None and is_product(place.above.node):
-        place = place.above
-    product = line.segment(place)
+    name, product = line.segment(place), line.segment(_whole_product(place))
     others = (w for w in words_in(product) if _letters(w) in _OF_LINKS and w[-1] != name[-1])
     return any(others) and not re.search(r"(?<![\w.*^])\d", product)
 
 
 def _with_a_two(line: Line, place: Place) -> bool:
     """Whether a 2 stands in the product: rather that is too many than a length is for its half."""
+    product = line.segment(_whole_product(place))
+    return bool(re.search(r"(?<![\w.*^/])2(?![\w.])", product))
+
+
+def _whole_product(place: Place) -> Place:
+    """The largest product, or quotient, that a place is a factor of; itself where of none."""
     while place.above is not None and is_product(place.above.node):
         place = place.above
-    return bool(re.search(r"(?<![\w.*^/])2(?![\w.])", line.segment(place)))
+    return place
 
 
 def _node(line: Line, place: Place, node: Node, kind: str, cost: float) -> None:
@@ -794,9 +792,9 @@ def _is_rate(line: Line, word: str) -> bool:
 
 def _wave_of_the_sum(line: Line, place: Place, left: Place, right: Place) -> None:
     """The sine or cosine of a sum as the sum of two: ``sin(q1) + sin(q2)`` for ``sin(q1 + q2)``."""
-    one, two = _as_wave(line, left), _as_wave(line, right)
-    if one is not None and two is not None and one.op == two.op and one.args != two.args:
-        _node(line, place, tree.call(one.op, tree.add(*one.args, *two.args)), "argument", 1.2)
+    wave = _of_both_angles(line, left, right)
+    if wave is not None:
+        _node(line, place, wave, "argument", 1.2)
 
 
 def _linear(line: Line, place: Place, left: Place, right: Place) -> None:
@@ -804,10 +802,9 @@ def _linear(line: Line, place: Place, left: Place, right: Place) -> None:
     last = left
     if is_product(left.node) and isinstance(left.node.op, ast.Mult):
         last = line.siblings[id(left)][1]
-    one, two = (_as_wave(line, x) for x in (last, right))
-    if one is None or two is None or one.op != two.op or one.args == two.args:
+    wave = _of_both_angles(line, last, right)
+    if wave is None:
         return
-    wave = tree.call(one.op, tree.add(*one.args, *two.args))
     start, end = last.span[0], right.span[1]
     told, pieces = line.told(
         place, N_("{old} should be {new}"), N_("{old} should be {new} in {term}")
@@ -816,6 +813,14 @@ def _linear(line: Line, place: Place, left: Place, right: Place) -> None:
     with np.errstate(all="ignore"):
         value = place.value / (last.value * right.value) * tree.evaluate(wave, line.at)
     line.edit(place, value, (start, end, pieces["new"]), "argument", 1.2, told, pieces)
+
+
+def _of_both_angles(line: Line, left: Place, right: Place) -> Node | None:
+    """The sine or cosine of the sum of two angles, of which both places are that; else None."""
+    one, two = _as_wave(line, left), _as_wave(line, right)
+    if one is None or two is None or one.op != two.op or one.args == two.args:
+        return None
+    return tree.call(one.op, tree.add(*one.args, *two.args))
 
 
 def _as_wave(line: Line, place: Place) -> Node | None:

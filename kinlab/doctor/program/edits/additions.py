@@ -153,8 +153,8 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     of_method = isinstance(parent, ast.Attribute) and parent.attr != "dot"  # J.dot(w) is a product
     if shape and not literal and not written and not of_method:
         yield from _matrices(here, scope, shape)
-    for text, piece in scope.pieces_here(shape).items() if isinstance(node, ast.Name) else ():
-        if text in (f"1 - {node.id}", f"1.0 - {node.id}"):
+    for unit in ("1", "1.0") if isinstance(node, ast.Name) else ():
+        if (piece := scope.pieces_here(shape).get(f"{unit} - {node.id}")) is not None:
             yield here.instead(piece, "missing term", _REMAINDER)
     row = len(shape) == 1 and isinstance(node, ast.Name) and scope.has_numpy
     multiplied = isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.Mult)
@@ -563,6 +563,7 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
     if operated:
         yield from _masses_behind(here, scope)
         yield from _beside_a_part(here, scope)
+    doubled = _of_the_same_values(here, scope) if named and operated and not term else ()
     for text, scalar in scope.pieces_here(()).items():
         if text == own or isinstance(scalar, ast.BinOp | ast.UnaryOp):
             continue
@@ -586,27 +587,31 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
                 yield here.instead(ast.BinOp(scalar, ast.Add(), node), "missing term", _AS_THERE)
             dear += _OF_ANOTHER_KIND * (text[0] != own[0])
             rest = _REST if text[0] in "lLar" and _of_one_link(text, own) else 1.05
-            dear += _DOUBLES * _doubles(here, scalar, scope)
+            dear += _DOUBLES * (text in doubled)
             for op, cost in ((ast.Add(), 1.0), (ast.Sub(), rest)):
                 new = ast.BinOp(node, op, scalar)
                 yield here.instead(new, "missing term", cost + dear)
 
 
-def _doubles(here: Here, other: ast.expr, scope: Scope) -> bool:
-    """Whether what is added has the same values, as the statement has it elsewhere.
+def _of_the_same_values(here: Here, scope: Scope) -> set[str]:
+    """What else stands in the statement and has the values of an expression: it would double it.
 
     Numbers that stay, as all masses of a unit arm, say nothing.
     """
-    text, own = text_of(other), scope.observed.of(here.node)
-    alike = (x for x in nodes(statement_of(here.above)) if isinstance(x, ast.Name | ast.Subscript))
-    seen = (scope.observed.of(x) for x in alike if text_of(x) == text)
-    found = next((one for one in seen if one is not None), None)
-    if own is None or found is None or not own.values:
-        return False
-    moves = any(not np.array_equal(one, own.values[0]) for one in own.values)
-    return moves and all(
-        np.array_equal(x, y) for x, y in zip(own.values, found.values, strict=False)
-    )
+    own = scope.observed.of(here.node)
+    values = [] if own is None else own.values
+    if all(np.array_equal(one, values[0]) for one in values):
+        return set()
+    beside: dict[str, list[Array]] = {}  # each as it stands there first
+    for one in nodes(statement_of(here.above)):
+        seen = scope.observed.of(one) if isinstance(one, ast.Name | ast.Subscript) else None
+        if seen is not None:
+            beside.setdefault(text_of(one), seen.values)
+    return {
+        text
+        for text, others in beside.items()
+        if all(np.array_equal(x, y) for x, y in zip(values, others, strict=False))
+    }
 
 
 def _beyond_the_origin(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
@@ -809,6 +814,7 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
         yield from _turned_terms(here, scope, siblings.union(*across if whole else ()))
         yield from _terms_of_others(here, scope, siblings)
         yield from _other_of_two(here, scope)
+    doubled = _of_the_same_values(here, scope)
     for text, piece in scope.pieces_here(shape).items():
         named = isinstance(piece, ast.Name | ast.Subscript)
         one = isinstance(piece, ast.Call) and called(piece) == "eye"
@@ -826,7 +832,7 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
         dear = min(scope.dear(piece), near)
         follows = follow(node, piece)
         more = 0.0 if follows and not zero else dear + zero  # m4 behind m3
-        more += _DOUBLES * _doubles(here, piece, scope)
+        more += _DOUBLES * (text in doubled)
         less = 0.0 if follows and entry else dear  # tau[2] beside tau[1], in a row of differences
         for op, cost in ((ast.Add(), 1.06 + more), (ast.Sub(), 1.08 + less)):
             yield here.instead(ast.BinOp(node, op, piece), "missing term", cost)

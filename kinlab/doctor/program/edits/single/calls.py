@@ -135,10 +135,9 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
             yield here.within(node.args, len(node.args) - 1, number(k), "index", cost)
     if name == "range":
         yield from _range(here, scope)
-    if name in _CONJUGATES and not (node.args and isinstance(node.func, ast.Name)):
-        of = node.args[0] if node.args else getattr(node.func, "value", None)
-        if isinstance(of, ast.expr):
-            yield here.instead(of, "function", _CONJUGATE)
+    if name in _CONJUGATES:
+        of = [*node.args[:1], *([node.func.value] if isinstance(node.func, ast.Attribute) else [])]
+        yield from (here.instead(one, "function", _CONJUGATE) for one in of[:1])
     if name == "transpose" and len(node.args) == len(_AXES_OF_THREE):
         yield from _other_axes(here)
     yield from _other_words(here, scope)
@@ -318,9 +317,7 @@ def _other_axes(here: Here) -> Iterator[ProgramEdit]:
 def _other_words(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """A word of a call that gives another argument: ``xz=0.001`` for ``xy=0.001``."""
     node = here.node
-    if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Name) or not node.keywords:
-        return
-    own = scope.space.get(node.func.id)
+    own = scope.space.get(node.func.id) if isinstance(node.func, ast.Name) else None
     if not isinstance(own, FunctionType):
         return
     code, given = own.__code__, {word.arg for word in node.keywords}
