@@ -242,6 +242,10 @@ class Tolerances:
     exact_poses: float = 1e-7
     """Noise below which poses are exact, and more than one slip can be looked for."""
 
+    carried_on: float = 1e-3
+    """Share of the largest value by which two sides of a chain of equalities may differ and carry
+    the same slip on: numbers in it are rounded to three digits."""
+
     effect_matches: float = 1e-9
     """Share of the values within which the effect of an edit is the one that was looked for."""
 

@@ -286,17 +286,13 @@ def _of_chain(parts: list[Diagnosis]) -> Diagnosis:
     return _also_said(made, (*notes,)) if made.causes else made
 
 
-_ROUNDED = 1e-3
-"""How far a number that is carried on may be rounded, of the largest."""
-
-
 def _has_the_values_of(one: Diagnosis, other: Diagnosis) -> bool:
     """Whether two formulas have one value at their worst states, to rounded numbers."""
     if one.hand is None or other.hand is None or np.shape(one.hand) != np.shape(other.hand):
         return False
     if not np.isfinite(other.hand).all():
         return False
-    near = _ROUNDED * np.abs(other.hand).max(initial=0.0)
+    near = TOLERANCES.carried_on * np.abs(other.hand).max(initial=0.0)
     return bool(np.allclose(one.hand, other.hand, rtol=0.0, atol=near))
 
 
