@@ -14,7 +14,7 @@ from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import called, copied, factors, names, nodes, text_of
 from kinlab.doctor.program.edits import chains
 from kinlab.doctor.program.edits.scope.forms import Turned, statement_of, stem_of, summands
-from kinlab.doctor.program.edits.scope.part import Scope
+from kinlab.doctor.program.edits.scope.part import CENTRES, Scope
 from kinlab.doctor.program.edits.single.whole import value_of, whole_constant
 from kinlab.doctor.program.observed import Shape
 from kinlab.doctor.program.places import (
@@ -56,8 +56,8 @@ _MIXED = 0.96
 """Cost of a lost 2 in the mixed term of a square: a length for a distance is as soon mistaken."""
 _FROM_ITS_ORIGIN = 1.08
 """Cost of a link's point for its origin."""
-_CENTRES = ("r", "c", "lc", "rc", "ac", "lg", "rg", "com")
-"""Names for the distance of a centre of mass from its joint."""
+_CENTRES = (*CENTRES, "r", "c")
+"""What may also be so called where a length is set for it: ``r = l2``."""
 _OF_A_CENTRE = 1.0
 """Cost of the half of a length for all of it, where it is called as a centre's distance."""
 _PUT_DOWN = 0.06

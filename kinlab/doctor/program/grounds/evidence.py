@@ -20,6 +20,7 @@ from kinlab.doctor.bytecode.syntax import beginning, called, factors, names, nod
 from kinlab.doctor.glossary.meaning import in_space
 from kinlab.doctor.glossary.textbook import Glossary, Row, Sense
 from kinlab.doctor.program.edits.scope.forms import summands
+from kinlab.doctor.program.edits.scope.part import CENTRES
 from kinlab.doctor.program.grounds.called import kinds_called, stem, unlike
 from kinlab.doctor.program.grounds.helpers import true_helpers
 from kinlab.doctor.program.grounds.scaled import is_free, is_own
@@ -87,8 +88,8 @@ _OF_THE_WHOLE = (*_WHOLLY, "transposed", "missing matrix", "missing term")
 """Kinds of edit that may as well stand where a value is worked out."""
 _OF_A_TWIST = "vwlop"
 """Last letters of names for the two halves of a twist: ``Jv``, ``Jw``; ``Jl``, ``Jo``."""
-_CENTRES, _MASSES = ("lc", "lg", "ac", "rc"), ("m", "mass")
-"""Names of the centre of a link, and of its mass, without their numbers."""
+_MASSES = ("m", "mass")
+"""Names of the mass of a link, without their numbers."""
 _SPOILING = ("sign", "factor", "number", "power", "parentheses", "extra term", "missing factor")
 """Kinds of edit that leave no right value right; another index makes another thing."""
 
@@ -436,7 +437,7 @@ class Grounds:
     def _takes_another_centre(self, edit: ProgramEdit) -> bool:
         """Whether a mass would be multiplied by the centre of another link: ``m2*lc1``."""
         name = _label_of(edit.changes[0].new)
-        if edit.kind != "name" or stem(name) not in _CENTRES:
+        if edit.kind != "name" or stem(name) not in CENTRES:
             return False
         products = (
             node

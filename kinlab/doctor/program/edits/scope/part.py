@@ -17,8 +17,8 @@ from kinlab.doctor.program.places import Here, places
 from kinlab.doctor.program.trial import Trial
 
 _SUM = re.compile(r"([A-Za-z]+)(\d+) \+ ([A-Za-z]+)(\d+)")
-_CENTRES = ("lc", "lg", "rc", "ac", "cc")
-"""Names for the distance of the only link's centre."""
+CENTRES = ("lc", "lg", "rc", "rg", "ac", "cc", "com")
+"""Names for the distance of a link's centre from its joint, without their digits."""
 _UNUSED = 0.2
 """What it is likelier that something is missing which is set and used nowhere."""
 
@@ -49,7 +49,7 @@ class Scope(Knowledge):
             return all(map(_is_twice, rows)) or all(_is_twice(row[::-1]) for row in rows)
         if len(digits) > 1 and "" in digits:  # of the one link's centre: lc beside l1
             bare = one if one.rstrip("0123456789") == one else other
-            digits = set() if bare.lower() in _CENTRES else digits
+            digits = set() if bare.lower() in CENTRES else digits
         if len(digits) > 1 or not all(isinstance(x, float | list | np.ndarray) for x in values):
             return False
         if type(values[0]) is type(values[1]) is float:
