@@ -189,7 +189,12 @@ def _halves_lengths(line: Line) -> bool:
 
 
 def _beside_a_length(line: Line, place: Place) -> bool:
-    """Whether a length stands beside another link's without a 2, which is lost there as often."""
+    """Whether a length stands beside another link's without a 2, which is lost there as often.
+
+    Not where no mass is: only the distance of a centre of mass has half a length there.
+    """
+    if not any(_letters(word) in ("m", "M") for word in words_in(line.source)):
+        return False
     name, product = line.segment(place), line.segment(_whole_product(place))
     others = (w for w in words_in(product) if _letters(w) in _OF_LINKS and w[-1] != name[-1])
     return any(others) and not re.search(r"(?<![\w.*^])\d", product)

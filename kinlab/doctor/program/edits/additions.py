@@ -15,6 +15,7 @@ from kinlab.doctor.bytecode.syntax import called, copied, factors, names, nodes,
 from kinlab.doctor.program.edits import chains
 from kinlab.doctor.program.edits.scope.forms import Turned, statement_of, stem_of, summands
 from kinlab.doctor.program.edits.scope.part import CENTRES, Scope
+from kinlab.doctor.program.edits.scope.terms import of_any_link
 from kinlab.doctor.program.edits.single.whole import value_of, whole_constant
 from kinlab.doctor.program.observed import Shape
 from kinlab.doctor.program.places import (
@@ -58,6 +59,8 @@ _FROM_ITS_ORIGIN = 1.08
 """Cost of a link's point for its origin."""
 _CENTRES = (*CENTRES, "r", "c")
 """What may also be so called where a length is set for it: ``r = l2``."""
+_AS_ITS_LIKE = 0.98
+"""Cost of a factor that the term has in the line of another link."""
 _OF_A_CENTRE = 1.0
 """Cost of the half of a length for all of it, where it is called as a centre's distance."""
 _PUT_DOWN = 0.06
@@ -239,6 +242,7 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
             cost = 1.15 if rare else 1.05 + _ODD * (passed or counted)
             cost = _KEPT if _keeps(parent, node) else cost
             cost = _MIXED if value == 2 and _is_mixed(here) else cost
+            cost = _AS_ITS_LIKE if summand and _has_its_like(here, times, scope) else cost
             cost = _OF_A_CENTRE if value < 1 and _is_called_a_centre(here) else cost
             cost += _PUT_DOWN * (isinstance(parent, ast.List) and isinstance(node, ast.Name))
             yield here.instead(times, "factor", cost + _OF_A_LIST * used)
@@ -279,6 +283,11 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     weighed = rotated and isinstance(op, ast.Mult) and len(shape) == 1  # m*(R @ c)
     if listed or summand or argument or product or weighed:
         yield from _terms(here, scope, shape, whole or here.field == "elt")
+
+
+def _has_its_like(here: Here, new: ast.expr, scope: Scope) -> bool:
+    """Whether the line of another link has such a term: ``0.5*m2*v2`` for ``0.5*m1*v1``."""
+    return of_any_link(new) in scope.alike.get(stem_of(here.above), ())
 
 
 def _in_the_other_case(here: Here) -> Iterator[ast.expr]:

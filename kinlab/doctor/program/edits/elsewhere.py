@@ -65,10 +65,24 @@ class _Company:
 
 _ACROSS = 0.99
 """Cost of the entry across the diagonal, where all others of a matrix are as those."""
+_SUMMED = 1.03
+"""Cost of the sum of a part of a row for its entry, where the program has such a sum."""
 _CARRIED = 1.06
 """Cost of what a loop carries on for the factor or the term that it gets at each turn."""
 _NOTHING = 1.05
 """Cost of zeros for what is given beside them."""
+
+
+def _sums_of_rows(tree: ast.AST) -> Iterator[tuple[str, str, ast.Call]]:
+    """The sums of parts of rows: the row, the counter at which the part ends, the call."""
+    for call in nodes(tree):
+        if not isinstance(call, ast.Call) or called(call) != "sum":
+            continue
+        part = call.args[0] if call.args else getattr(call.func, "value", None)
+        if isinstance(part, ast.Subscript) and isinstance(part.slice, ast.Slice):
+            ends = {*names(part.slice)}
+            if len(ends) == 1:
+                yield text_of(part.value), ends.pop(), call
 
 
 def _is_set_around(name: str, here: Here) -> bool:
@@ -118,6 +132,7 @@ class Elsewhere:
                         self._given[called(node), k].setdefault(text_of(one), one)
             self._of_lines(tree)
         self._carried = {x: y for tree in trial.trees for x, y in _carried_on(tree)}
+        self._sums = [one for tree in trial.trees for one in _sums_of_rows(tree)]
         self._products = _products(trial, observed)
         self._roles = _roles(trial, observed)
         self._within = _within(trial, observed)
@@ -153,6 +168,8 @@ class Elsewhere:
         for new in _across(here):
             if _known(new, scope):
                 yield here.instead(new, _kind(node, new), _ACROSS)
+        if shape == () and isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Name):
+            yield from self._summed(here, node, node.slice.id)
         if shape is None or isinstance(node, ast.Constant | ast.List | ast.Tuple):
             return
         if shape and self._within and isinstance(node, ast.Name | ast.Subscript | ast.Call):
@@ -182,6 +199,13 @@ class Elsewhere:
             if observed.shape(of.whole) == shape or isinstance(here.parent, ast.Assign):
                 cost = 1.1 if isinstance(node, ast.Name) else 1.06
                 yield here.instead(larger, _kind(node, larger), cost)
+
+    def _summed(self, here: Here, node: ast.Subscript, counter: str) -> Iterator[ProgramEdit]:
+        """A part of a row summed up, as it is elsewhere: ``sum(q[: j + 1])`` for ``q[j]``."""
+        for row, other, whole in self._sums:
+            if row == text_of(node.value):
+                new = _OtherCounter(other, counter).visit(copied(whole))
+                yield here.instead(new, "missing term", _SUMMED)
 
     def _given_to_own(self, here: Here, shape: Shape) -> Iterator[ProgramEdit]:
         """What a function of the program's makes of a vector: ``perp(w)`` for ``w``."""

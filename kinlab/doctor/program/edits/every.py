@@ -47,6 +47,7 @@ from kinlab.doctor.program.edits.scope.forms import statement_of, summands
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.calls import begun_as_a_copy, of_call
 from kinlab.doctor.program.edits.single.comparisons import (
+    NUMBERED,
     is_switch,
     negated,
     of_comparison,
@@ -90,8 +91,6 @@ _TWO = 2
 """Names in a sum that are a formula of their own."""
 _GIVEN = 0.04
 """What another argument costs more where one joint's follows on another's."""
-_NUMBERED = 1.08
-"""Cost of another joint's number in a test for one: ``i == 2`` for ``i == 3``."""
 _FILLED = 1.04
 """Cost of another array that is filled, too."""
 _SUMMED_UP = 1.03
@@ -568,7 +567,7 @@ def _equal(test: ast.Compare) -> bool:
 def _comparison_of(here: Here, test: ast.expr) -> Iterator[ProgramEdit]:
     if isinstance(test, ast.Compare) and len(test.comparators) == 1:
         right = test.comparators[0]
-        cost = _NUMBERED if _equal(test) and whole_constant(right) else 1.25
+        cost = NUMBERED if _equal(test) and whole_constant(right) else 1.25
         for step in (1, -1):
             yield here.within(test, "comparators", [plus(right, step)], "condition", cost)
 

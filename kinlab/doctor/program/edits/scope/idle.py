@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from types import FunctionType
 
@@ -72,7 +72,16 @@ def idle_joints(trial: Trial, shapes: Mapping[str, Shape]) -> Iterator[ast.Subsc
         yield entry(named(name), ast.Constant(k))
 
 
-def with_its_angle(joint: ast.Subscript, sine: ast.expr) -> Iterator[ast.expr]:
+def unturned(tree: ast.AST, turned: Collection[str]) -> Iterator[ast.Name]:
+    """Angles that stand in a row beside ones of which sines are taken, and of which none is."""
+    rows = [[*x.elts] for x in nodes(tree) if isinstance(x, ast.List | ast.Tuple)]
+    for row in rows:
+        every = [x.id for x in row if isinstance(x, ast.Name) and isinstance(x.ctx, ast.Load)]
+        if not {*turned}.isdisjoint(every):
+            yield from (named(x) for x in every if x not in turned)
+
+
+def with_its_angle(joint: ast.expr, sine: ast.expr) -> Iterator[ast.expr]:
     """A joint's position, and its sine and cosine."""
     one = ast.Call(copied(sine), [joint], [])
     yield joint

@@ -54,6 +54,7 @@ class Knowledge:
         pieces: expressions that occur, and entries of lists by a counter, by shape and text.
         crossing: the program's functions that make a matrix of a twist.
         addends: the terms of the sums that are set, by what is set, without its number.
+        alike: the same, as they are typed but for the numbers of names.
         idle: calls that nothing makes, of functions or for joints that are used nowhere, by shape.
         inner: the terms of the sums that are factors, without their numbers.
         factors: what stands in front of a product of matrices, by the statements' identities.
@@ -128,6 +129,7 @@ class Knowledge:
         """The terms and factors of its sums and products."""
         self.divisors, self.fronts = terms.divisors_of(tree), terms.fronts_of(tree)
         self.differences = terms.differences_of(tree)
+        self.alike = terms.alike_of(tree)
         self.addends, self.factors = terms.addends_of(tree), terms.factors_of(tree)
         self.inner = terms.inner_terms_of(tree, self.observed)
 
@@ -311,6 +313,9 @@ class Knowledge:
             for joint in idle.idle_joints(trial, self.shapes):
                 self._put_all(((), one) for one in idle.with_its_angle(joint, sine))
                 self.idle += idle.calls_for(joint, tree, self.functions, self.observed)
+            for angle in idle.unturned(tree, self.turned):
+                if self.shapes.get(angle.id) == ():
+                    self._put_as_idle(((), x) for x in idle.with_its_angle(angle, sine))
         self._put_as_idle(idle.idle_rows(trial, tree, self.observed))
         own = self.functions
         at_hand = [*self.unused, *self.counters, *(n for n, shape in self.shapes.items() if shape)]

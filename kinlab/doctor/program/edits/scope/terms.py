@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 
 from kinlab.doctor.bytecode.syntax import names, nodes, text_of
 from kinlab.doctor.program.edits.chains import without_numbers
@@ -46,6 +47,21 @@ def addends_of(tree: ast.AST) -> dict[str, set[str]]:
             if isinstance(value, ast.BinOp | ast.Call):
                 known |= {_bare(one) for one in summands(value)}
     return found
+
+
+def alike_of(tree: ast.AST) -> dict[str, set[str]]:
+    """The same terms of any link: with their numbers, and without those of names."""
+    found: dict[str, set[str]] = {}
+    for statement in nodes(tree):
+        if isinstance(statement, ast.Assign) and isinstance(statement.value, ast.BinOp):
+            known = found.setdefault(stem_of([statement]), set())
+            known |= {of_any_link(one) for one in summands(statement.value)}
+    return found
+
+
+def of_any_link(term: ast.expr) -> str:
+    """A term without the numbers of names: ``0.5*m*v`` of ``0.5*m2*v2``."""
+    return re.sub(r"(?<=[A-Za-z_])\d+|[ ()]", "", text_of(term))
 
 
 def inner_terms_of(tree: ast.AST, observed: Observed) -> set[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import combinations, permutations
 from types import FunctionType
 
@@ -82,6 +82,8 @@ _FAMILIES = (
 _BEYOND = {"sin": False, "cos": True}
 """Functions that stand in ``1 - cos(t)`` and ``t - sin(t)``; whether 1 is what they are taken of.
 """
+_OTHERS = 1.07
+"""Cost of the links outward for those inward, or the other way round."""
 _FARTHER = 1.12
 """Cost of a loop from the farther of two counters on: ``range(max(i, j), n)``."""
 _SQUARE = 1.1
@@ -423,10 +425,14 @@ def _range(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
             for new in ([load], [plus(load, 1)], [load, args[0]], [plus(load, 1), args[0]]):
                 yield here.within(node, "args", new, "loop", cost)
         yield here.within(node, "args", [ast.Constant(1), args[0]], "loop", 1.2)
+        yield from _of_the_others(here, loops)
         for both in combinations(sorted(around), 2):
             farther = called_with("max", *(ast.Name(one, ast.Load()) for one in both))
             yield here.within(node, "args", [farther, args[0]], "loop", _FARTHER)
     else:
+        around_first = len(args) == 2 and not around.isdisjoint(names(args[0]))
+        for end in (args[0], plus(args[0], 1)) if around_first else ():
+            yield here.within(node, "args", [end], "loop", _OTHERS)
         counted = {*inner, *scope.whole} if isinstance(args[0], ast.Name) else set[str]()
         for name in sorted(counted - {*names(args[0])}):
             farther = called_with("max", args[0], ast.Name(name, ast.Load()))
@@ -436,6 +442,19 @@ def _range(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
             load = ast.Name(name, ast.Load())
             yield here.within(node, "args", [load, *args[1:]], "loop", 1.25)
             yield here.within(node, "args", [plus(load, 1), *args[1:]], "loop", 1.25)
+
+
+def _of_the_others(here: Here, loops: Sequence[ast.For]) -> Iterator[ProgramEdit]:
+    """From an outer loop's counter on for up to it: ``range(j, 3)`` for ``range(j + 1)``."""
+    (upto,) = here.node.args
+    for loop in loops:
+        over = loop.iter if isinstance(loop.iter, ast.Call) else None
+        if over is None or called(over) != "range" or len(over.args) > 2:
+            continue
+        for counter in (x for x in names(loop.target) if x in names(upto)):
+            first = ast.Name(counter, ast.Load())
+            for start in (first, plus(first, 1)):
+                yield here.within(here.node, "args", [start, over.args[-1]], "loop", _OTHERS)
 
 
 def _other_way(here: Here) -> Iterator[ProgramEdit]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
+from kinlab.doctor.program.edits.single.whole import plus, whole_constant
 from kinlab.doctor.program.places import Here, ProgramEdit
 
 _OPPOSITE: dict[type[ast.cmpop], type[ast.cmpop]] = {
@@ -35,6 +36,10 @@ _KIND = 1.03
 """Cost of the other kind of joint in a condition."""
 
 
+NUMBERED = 1.08
+"""Cost of another joint's number in a test for one: ``i == 2`` for ``i == 3``."""
+
+
 def of_comparison(here: Here) -> Iterator[ProgramEdit]:
     node = here.node
     if len(node.ops) != 1:
@@ -48,6 +53,10 @@ def of_comparison(here: Here) -> Iterator[ProgramEdit]:
             turned = ast.Eq() if isinstance(node.ops[0], ast.NotEq) else ast.NotEq()
             yield here.within(node, "ops", [turned], "condition", _KIND + 0.03)
         return
+    equal = isinstance(here.parent, ast.IfExp) and isinstance(node.ops[0], ast.Eq | ast.NotEq)
+    for step in (1, -1) if equal and whole_constant(node.comparators[0]) else ():
+        number = [plus(node.comparators[0], step)]
+        yield here.within(node, "comparators", number, "condition", NUMBERED)
     pairs = {ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt}
     other = pairs.get(type(node.ops[0]))
     if other is not None:

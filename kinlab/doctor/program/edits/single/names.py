@@ -28,6 +28,8 @@ _ENTRY, _ENTRY_NEAR = 1.16, 1.2
 """Cost of an entry of what stands in the same line, or in one beside it, for a name."""
 _HALF = 1.03
 """Cost of a length for the distance of the centre, where that is half of it, or that for it."""
+_OF_THE_TURN = 1.06
+"""Cost of a row's entry for the row itself, in a product in a loop: ``dJ*v[k]``."""
 _COUNTERS = 1.08
 """Cost of one loop's counter for another's."""
 _NUMBERED = 1.07
@@ -86,6 +88,10 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
             yield here.instead(ast.Name(other, ast.Load()), kind, cost)
     if shape == ():
         yield from _entries_beside(here, scope)
+    if len(shape) == 1 and isinstance(getattr(here.parent, "op", None), ast.Mult):
+        for counter in _counters_around(here, scope):
+            one = ast.Subscript(node, ast.Name(counter, ast.Load()), ast.Load())
+            yield here.instead(one, "index", _OF_THE_TURN)
     if shape and not isinstance(here.parent, ast.Subscript | ast.Attribute):
         for text, entry in scope.simple(shape):  # an entry of a list by a counter
             if isinstance(entry, ast.Subscript) and text != node.id:
@@ -95,6 +101,12 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
             if other != node.id and entries == shape[1:] and scope.shapes.get(other) != shape:
                 cost = 1.15 if _alike(other, node.id) else 1.2
                 yield here.instead(ast.Name(other, ast.Load()), "name", cost)
+
+
+def _counters_around(here: Here, scope: Scope) -> list[str]:
+    """What the loops around count with."""
+    loops = [x.target for x in here.above if isinstance(x, ast.For)]
+    return [x.id for x in loops if isinstance(x, ast.Name) and x.id in scope.counting]
 
 
 def _entries_beside(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

@@ -6,7 +6,7 @@ import ast
 from collections.abc import Iterator
 from itertools import permutations
 
-from kinlab.doctor.bytecode.syntax import called, names, nodes
+from kinlab.doctor.bytecode.syntax import called, names, nodes, text_of
 from kinlab.doctor.program.edits import chains
 from kinlab.doctor.program.edits.scope.forms import statement_of
 from kinlab.doctor.program.edits.single.constants import OF_A_NUMBER, POWER
@@ -36,12 +36,31 @@ _COMMUTATOR = 1.1
 """Cost of the second half of a commutator, or of a symmetric part, that is not there."""
 _UNTURNED = 1.09
 """Cost of a vector that is turned too many."""
+_BY_ITSELF = 1.01
+"""Cost of ``A.T @ A`` for ``A @ A.T``."""
+_GIVEN = 1.1
+"""Cost of terms behind a call for terms of what it is given."""
 _MIXED = 1.05
 """Cost of the terms of a quadratic form that are no squares."""
 _DIVIDED = 1.2
 """Cost of a quotient for a product, or a product for a quotient."""
 DIAGONALS = ("tril", "triu", "eye", "diag")
 """Functions whose last argument is the number of a diagonal."""
+
+
+def _is_by_its_transpose(node: ast.BinOp) -> bool:
+    """Whether a matrix is multiplied by its own transpose, easily the wrong one of two."""
+    last = chains.members(chains.chain(node.left, chains.PRODUCTS))[-1]
+    one, other = text_of(last), text_of(node.right)
+    return f"{one}.T" == other or one == f"{other}.T"
+
+
+def _into_the_last_argument(here: Here) -> Iterator[ProgramEdit]:
+    """Terms behind a call as terms of what it is given: ``solve(M, tau - h)`` of ``.. - h``."""
+    head, terms = chains.chain(here.node, chains.SUMS)
+    if isinstance(head, ast.Call) and len(head.args) > 1 and not head.keywords:
+        into = [*head.args[:-1], chains.joined(head.args[-1], terms)]
+        yield here.instead(ast.Call(head.func, into, []), "parentheses", _GIVEN)
 
 
 def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[ProgramEdit]:
@@ -88,6 +107,7 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             if isinstance(inner, ast.Call) and side == "left" and len(inner.args) == 1:
                 into = ast.Call(inner.func, [ast.BinOp(inner.args[0], op, right)], inner.keywords)
                 yield here.instead(into, "parentheses", 1.15)
+        yield from _into_the_last_argument(here)
         if isinstance(left, ast.BinOp) and isinstance(left.op, ast.Sub) and isinstance(op, ast.Add):
             # a - b + c for a - (b + c)
             rest = ast.BinOp(left.right, op, right)
@@ -118,7 +138,8 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
         if isinstance(op, ast.MatMult):
             swapped = chains.exchanged(node, lambda one: observed.shape(one) == ())
             upright = len(matrices[1] or ()) == 1 < len(matrices[0] or ())  # whose R.T is meant
-            yield here.instead(swapped, "order", _ROWS if upright else 1.06)
+            cost = _ROWS if upright else _BY_ITSELF if _is_by_its_transpose(node) else 1.06
+            yield here.instead(swapped, "order", cost)
             sizes = observed.shape(node) or (0,)
             twice = _halved(node) if len(sizes) == _PAIR and sizes[0] == sizes[1] else None
             if twice is not None:  # A + A.T for 2*A
