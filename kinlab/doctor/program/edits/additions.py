@@ -61,6 +61,8 @@ _CENTRES = (*CENTRES, "r", "c")
 """What may also be so called where a length is set for it: ``r = l2``."""
 _AS_ITS_LIKE = 0.98
 """Cost of a factor that the term has in the line of another link."""
+_MINUTE, _OF_A_TURN = 60, 0.98
+"""Seconds; cost of a 2 that is lost of the angle of a turn."""
 _OF_A_CENTRE = 1.0
 """Cost of the half of a length for all of it, where it is called as a centre's distance."""
 _PUT_DOWN = 0.06
@@ -241,6 +243,7 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
             rare = trig or value == _THRICE
             cost = 1.15 if rare else 1.05 + _ODD * (passed or counted)
             cost = _KEPT if _keeps(parent, node) else cost
+            cost = _OF_A_TURN if value == 2 and _has_half_a_turn(node) else cost
             cost = _MIXED if value == 2 and _is_mixed(here) else cost
             cost = _AS_ITS_LIKE if summand and _has_its_like(here, times, scope) else cost
             cost = _OF_A_CENTRE if value < 1 and _is_called_a_centre(here) else cost
@@ -283,6 +286,14 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     weighed = rotated and isinstance(op, ast.Mult) and len(shape) == 1  # m*(R @ c)
     if listed or summand or argument or product or weighed:
         yield from _terms(here, scope, shape, whole or here.field == "elt")
+
+
+def _has_half_a_turn(node: ast.expr) -> bool:
+    """Whether half a turn a minute is in a product: ``n*pi/60``."""
+    first, others = chains.chain(node, chains.PRODUCTS)
+    below = [x for op, x in others if isinstance(op, ast.Div)]
+    names_ = {getattr(x, "attr", getattr(x, "id", "")) for x in chains.members((first, others))}
+    return "pi" in names_ and any(getattr(x, "value", 0) == _MINUTE for x in below)
 
 
 def _has_its_like(here: Here, new: ast.expr, scope: Scope) -> bool:

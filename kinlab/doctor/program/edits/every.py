@@ -24,6 +24,7 @@ from kinlab.doctor.program.edits.counterparts import of_counterparts
 from kinlab.doctor.program.edits.elsewhere import Elsewhere
 from kinlab.doctor.program.edits.forgotten import (
     across,
+    along_a_list,
     less_a_row,
     of_forgotten,
     of_kinds_of_joints,
@@ -412,6 +413,8 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Progra
         return
     if isinstance(node, ast.Call | ast.Subscript):
         yield from with_slices(here, scope)
+    if whole and isinstance(node, ast.Subscript) and isinstance(here.parent, ast.Call):
+        yield from of_degrees(here, scope, seen)
     if shape is not None and not isinstance(here.parent, ast.Compare | ast.If):
         yield from as_a_term(here, scope, shape)
         yield from of_composites(here, scope, shape)
@@ -456,6 +459,8 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Program
         yield from _for_all_joints(here, scope, observed)
     if isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Name):
         yield from _added_to_one(here, scope, observed)
+    if isinstance(node, ast.Assign | ast.Return):
+        yield from along_a_list(here, scope)
     if isinstance(node, ast.Assign | ast.AugAssign | ast.Return | ast.Expr):
         yield from _counted(here, scope)
         yield from exchanges.of_statement(here, scope, observed)

@@ -7,6 +7,8 @@ from collections.abc import Iterator, Sequence
 from functools import reduce
 from itertools import combinations, permutations
 
+import numpy as np
+
 from kinlab.doctor.bytecode.syntax import called, copied, factors, names, nodes, text_of
 from kinlab.doctor.program.edits.additions import OtherAxis, summed
 from kinlab.doctor.program.edits.exchanges import Renamed
@@ -28,6 +30,8 @@ _DIAGONAL = 1.06
 """What it is to forget what is used nowhere on a diagonal."""
 _IDLE_DIAGONAL = 0.96
 """The same where the matrix is given on."""
+_BESIDE_A_LIST = 1.06
+"""Cost of a term with an array that nothing uses, beside a list."""
 _LINES, _AS_BESIDE = 3, 1.07
 """Lines above and below that are like one; cost of a number that these end with."""
 _FEW = 8
@@ -349,6 +353,21 @@ def _of_idle_numbers_along(here: Here, scope: Scope, shape: Shape) -> Iterator[P
                 both = ast.BinOp(one, ast.Mult(), other)
                 term = ast.BinOp(both, ast.Mult(), vector)
                 yield here.instead(ast.BinOp(here.node, ast.Add(), term), "missing term", 1.14)
+
+
+def along_a_list(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """An array that nothing uses, times another one, beside a list that is set or given back."""
+    node = here.node
+    if not isinstance(node.value, ast.List | ast.ListComp):
+        return
+    for name in sorted(scope.unused):
+        array = isinstance(scope.space.get(name), np.ndarray)
+        shape = scope.shapes.get(name, ())
+        for _text, vector in scope.simple(shape) if array and len(shape) == 1 else ():
+            if getattr(vector, "id", "") != name:
+                term = ast.BinOp(ast.Name(name, ast.Load()), ast.Mult(), vector)
+                new = ast.BinOp(term, ast.Add(), node.value)
+                yield here.within(node, "value", new, "missing term", _BESIDE_A_LIST)
 
 
 def _beside_in_a_product(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:

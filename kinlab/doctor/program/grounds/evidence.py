@@ -156,6 +156,8 @@ class Grounds:
         self.parts = {part.name for part in trial.program.parts[1:]}
         every = (node for tree in trial.trees for node in nodes(tree))
         self.turned = {_turned_part(node) for node in every} - {None}
+        self.helpers, self.mirrored = true_helpers(trial, observed)
+        self.crossing = {k for k in self.helpers if self._has_one_order(trial.trees[k])}
         if not known:
             return
         for part, tree in enumerate(trial.trees):
@@ -166,8 +168,6 @@ class Grounds:
                 self.values |= {own, 1 / own} if own else set()
         self.trusted -= self.doubted  # at rest what moves is silent
         self._below()
-        self.helpers, self.mirrored = true_helpers(trial, observed)
-        self.crossing = {k for k in self.helpers if self._has_one_order(trial.trees[k])}
 
     def spoils_a_helper(self, edit: ProgramEdit) -> bool:
         """Whether a function would be spoilt that is right whatever it is given."""

@@ -71,16 +71,27 @@ def _calls(trial: Trial, observed: Observed, name: str) -> Iterator[Call]:
     for node in (node for tree in trial.trees for node in nodes(tree)):
         if not isinstance(node, ast.Call) or called(node) != name or node.keywords:
             continue
-        seen = [observed.of(one) for one in (*node.args, node)]
-        shapes = tuple(None if one is None else one.shape for one in seen)
-        told = [one for one in seen if one is not None]
-        if len(told) < len(seen) or None in shapes or len({one.count for one in told}) > 1:
+        typed = {k: _typed(x) for k, x in enumerate(node.args) if isinstance(x, ast.Constant)}
+        others = [observed.of(x) for k, x in enumerate((*node.args, node)) if k not in typed]
+        told = [one for one in others if one is not None]
+        if len(told) < len(others) or len({one.count for one in told}) != 1:
+            continue
+        values = [one.values for one in told]
+        for k, number in sorted(typed.items()):
+            values.insert(k, [number] * _MOST)
+        shapes = tuple(one[0].shape if one else None for one in values)
+        if None in shapes:
             continue
         kind = kind or shapes
-        every = zip(*(one.values for one in told), strict=False)
+        every = zip(*values, strict=False)
         for (*given, value), _k in zip(every, range(_MOST), strict=False):
             if shapes == kind and all(np.isfinite(x).all() for x in (*given, value)):
                 yield given, value
+
+
+def _typed(node: ast.Constant) -> Array:
+    """The number that a call is given as it stands; NaN of what is none."""
+    return np.array(float(node.value) if isinstance(node.value, int | float) else np.nan)
 
 
 def _cross(v: Array) -> Array:

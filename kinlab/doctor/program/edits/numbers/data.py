@@ -35,6 +35,8 @@ _DIGITS = 10
 """Significant digits that somebody types at most."""
 GRAVITY = re.compile(r"_*(?:g(?:_?(?:vec|0))?$|grav)", re.IGNORECASE)
 """What the acceleration of gravity is called."""
+_OF_BEFORE, _BEFORE = re.compile(r"(?:_?prev|_?im1|_?minus1?)$", re.IGNORECASE), 1.04
+"""How a row of what belongs to the frame before is called; cost of such a row one place on."""
 _NAMES = 12
 """Names of numbers of which any two may have been exchanged."""
 
@@ -170,7 +172,8 @@ def _exchanged(
                 yield _swap(turned, "reversed", name, place, (_row(value), _row(back)))
             for moved in moved_on(value):
                 turned = tuple(FieldChange(value, k, x) for k, x in enumerate(moved))
-                yield _swap(turned, "shifted", name, place, (_row(value), _row(moved)))
+                edit = _swap(turned, "shifted", name, place, (_row(value), _row(moved)))
+                yield replace(edit, cost=_BEFORE) if _OF_BEFORE.search(name) else edit
         return
     rows = [one for one in value if isinstance(one, list | tuple | np.ndarray)]
     flat = all(_is_plain(x) for one in rows for x in one)
