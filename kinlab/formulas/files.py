@@ -62,6 +62,8 @@ from kinlab.host.language import N_, _
 _FORMULAS = 200
 _SHOWN = 60
 """Signs of a formula in a remark."""
+_EMPTY = re.compile(r"=\s{0,9}\{\s?\}(?=\s*[&\\\w+({-])")
+"""What LaTeX has for the space behind a sign of equality: ``c = {} & a + b``."""
 _EQUATION_BEHIND = re.compile(r"; (?=[^;=\]]{1,40} = )")
 PartsOf = Callable[[str], grids.Grid | None]
 """The entries of a name that is of several, row by row; None of a name that is of one or of all."""
@@ -157,7 +159,7 @@ def _every_text(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     for name in entries_of(document):
         for table in (document, *(document.get(key, {}) for key in _TABLES)):
             if isinstance(table, dict) and isinstance(value := table.get(name), str):
-                yield name, value[:LENGTH]
+                yield name, _EMPTY.sub("=", value[:LENGTH])
 
 
 def _conclusion(entry: str, text: str, alone: bool) -> str:
@@ -563,4 +565,4 @@ def _text(value: Any, place: str) -> str:
         raise refused(
             place, N_("{count} characters; at most {length}"), count=len(value), length=LENGTH
         )
-    return value.translate(WIDE)
+    return _EMPTY.sub("=", value.translate(WIDE))

@@ -519,3 +519,37 @@ def test_the_same_of_what_is_asked_for_is_right():
         assert found.agrees
         if "J" in text:
             assert found.function.count(",") >= 3  # all that is right is told
+
+
+@pytest.mark.parametrize(
+    "words",
+    ["The slide moves downwards, hence", "Der Schieber bewegt sich nach unten, deshalb", "滑块向下移动，因此"],
+)  # fmt: skip
+def test_which_way_the_only_slide_moves_is_held_against_the_arm(words):
+    up = words.replace("downwards", "upwards").replace("unten", "oben").replace("下", "上")
+    for formula, agrees in (("d_1 - d_3", True), ("d_1 + d_3", False)):
+        assert kl.diagnose("scara", "z", f"{words} $z = {formula}$.").agrees is agrees
+        with pytest.raises(ExpressionError, match="not so of this robot"):
+            kl.diagnose("scara", "z", f"{up} $z = {formula}$.")
+
+
+def test_a_full_stop_behind_the_dollars_is_none_of_the_formula():
+    found = kl.diagnose("planar2r", "g2", f"Gravity acts downwards, hence ${G2}$.")
+    assert found.agrees, found
+
+
+def test_nothing_in_braces_behind_a_sign_of_equality():
+    """As LaTeX has it in front of the first of several lines."""
+    given = "with $h_2 = m_2 l_1 l_2 \\sin q_2$:\n\n"
+    text = "\\begin{align}\nc_1 = {} & -h_2 \\dot q_2^2 \\\\\n & - 2 h_2 \\dot q_1 \\dot q_2\n\\end{align}"
+    for front in ("", given):
+        right = text if front else text.replace("h_2", "m_2 l_1 l_2 \\sin q_2")
+        assert kl.diagnose("planar2r", "c1", front + right).agrees
+        wrong = kl.diagnose("planar2r", "c1", front + right.replace("- 2 ", "- "))
+        assert "should be 2" in wrong.sentence, wrong
+
+
+def test_numbers_that_were_worked_out_lose_no_sign():
+    text = "T = ½·I₁·q̇₁² + ½·m₁·(l₁/2)²·q̇₁² = (0.075 + 0.225)·q̇₁²"
+    found = kl.diagnose("single_link", "T", text)
+    assert found.causes[0].kinds == ("factor",) and "/2" in found.sentence, found

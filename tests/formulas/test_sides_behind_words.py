@@ -15,7 +15,7 @@ OWN = "m1*l1^2/12 + m1*l1^2/4"
     [
         " (Steiner)\n", " (Steiner) ", " by Steiner\n", " by the parallel axis theorem\n", " (parallel axis theorem)\n",
         ", i.e. ", ", that is ", ", so ", " hence ", ", which simplifies to ", "; this gives ", "，即", "，化简得", "，所以",
-        " (using l_c = l/2) ", " [Steiner] ", r" \text{(Steiner)} ", "\\quad\\text{(Steiner)}\n", " (Satz von Steiner)\n", ", d.h. ",
+        " (using l_c = l/2) ", " (平行轴定理) ", "（平行轴定理）\n", " [Steiner] ", r" \text{(Steiner)} ", "\\quad\\text{(Steiner)}\n", " (Satz von Steiner)\n", ", d.h. ",
     ],
 )  # fmt: skip
 def test_a_side_behind_words_is_judged(between):
@@ -29,7 +29,7 @@ def test_a_side_behind_words_is_judged(between):
     assert not middle.agrees, middle
 
 
-@pytest.mark.parametrize("words", ["(平行轴定理)", "（平行轴定理）\n"])
+@pytest.mark.parametrize("words", ["(移轴公式)", "（移轴公式）\n"])
 def test_a_side_behind_words_that_nobody_has_listed_is_not_passed_over(words):
     right = kl.diagnose("single_link", "M11", f"M11 = {OWN} {words}= m1*l1^2/3")
     assert right.agrees and any("were not read" in one for one in right.remarks), right

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -305,7 +305,10 @@ class _Facts:
         return all(_along(self._moves(k), right) for k in some)
 
     def third_slides(self, claim: Claim) -> bool | None:
-        """Of a joint by its number alone."""
+        """Of a joint by its number alone, or of the only slide."""
+        if not claim.refs:
+            slides = [k for k in range(1, self.table.n + 1) if not self._turns(k)]
+            claim = replace(claim, refs=tuple(("joint", k) for k in slides if len(slides) == 1))
         return self.slide(claim) if claim.refs and not claim.names else None
 
     def no_friction(self, _claim: Claim) -> bool:

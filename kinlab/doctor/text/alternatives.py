@@ -513,8 +513,16 @@ def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
 
 _ENCLOSED, _ENCLOSED_TERMS = 1.2, 3
 """Cost of lost parentheses around the end of a term and the next one; terms before the last."""
+_OF_NUMBERS = 0.7
+"""What another sign costs more in a sum of numbers."""
 _BEHIND_A_MINUS = 1.25
 """Cost of a number that does not belong behind a minus: the 2 of ``-2*m2``."""
+
+
+def _is_of_numbers(place: Place | None) -> bool:
+    """Whether it is a sum of numbers alone: of what was worked out no sign is lost."""
+    every = [] if place is None else [*ast.walk(place.node)]
+    return all(isinstance(x, ast.BinOp | ast.Constant | ast.operator) for x in every)
 
 
 def _takes_away(place: Place) -> bool:
@@ -959,6 +967,7 @@ def _as_factor(line: Line, place: Place) -> None:
     if not signed or place.role == 0:
         span = (start, first, "" if piece.startswith("-") else "-")
         turned, only = _turned(line, place), None if whole else span
+        extra += _OF_NUMBERS * (signed and _is_of_numbers(place.above))
         line.instead(place, turned, -place.value, "sign", 1.0 + extra, only)
     front, before = _openings(line, place)
     for name, value in line.atoms.items():

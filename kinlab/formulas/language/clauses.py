@@ -442,6 +442,7 @@ def _tidied(text: str) -> str:
     # of signs on both sides the one behind stays: it cuts what comes from what was before
     text = re.sub(rf"[,;，；、]?\s*{_GAP}(?=\s*[,;，；.。)）\n]|\s*$)", "", text)
     text = re.sub(rf"{_GAP}\s*[:：]", "", text)
+    text = re.sub(r"(?<=\$)\s*[.。]\s*$", "", text)
     return text.replace(_GAP, " ")
 
 
