@@ -203,7 +203,7 @@ def _beside_a_length(line: Line, place: Place) -> bool:
 def _with_a_two(line: Line, place: Place) -> bool:
     """Whether a 2 stands in the product: rather that is too many than a length is for its half."""
     product = line.segment(_whole_product(place))
-    return bool(re.search(r"(?<![\w.*^/])2(?![\w.])", product))
+    return bool(re.search(r"(?<![\w.*^/])2(?:\.(?=\*))?(?![\w.])", product))
 
 
 def _whole_product(place: Place) -> Place:
@@ -499,7 +499,7 @@ def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
     ):
         plain = isinstance(gone.node, ast.Constant)
         kind = "factor" if plain else "extra factor"
-        again = plain and re.search(rf"/\s*\(?{re.escape(factor)}\b", line.segment(kept))
+        again = plain and re.search(rf"/\s*\(?{re.escape(factor)}\b", _outside(line.segment(kept)))
         cost = _UNDONE if again else 1.3
         line.edit(place, kept.value, span, kind, cost, told, pieces | {"factor": factor})
     minus = left.node
@@ -513,6 +513,8 @@ def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
 
 _ENCLOSED, _ENCLOSED_TERMS = 1.2, 3
 """Cost of lost parentheses around the end of a term and the next one; terms before the last."""
+_MISSING_RATHER = 0.35
+"""What parentheses cost more outside of which one factor stands: it is missing in a term."""
 _OF_NUMBERS = 0.7
 """What another sign costs more in a sum of numbers."""
 _BEHIND_A_MINUS = 1.25
@@ -575,7 +577,10 @@ def _enclosed(line: Line, place: Place, at: int) -> None:
             shown["new"] = line.source[term_at:cut] + behind
             told = N_("{old} should be {new}")
             span = (cut, place.span[1], behind)
-            line.edit(place, value, span, "parentheses", _ENCLOSED, told, shown)
+            alone = not quotient and _is_one_factor(line.source[term_at:cut].strip(" */"))
+            line.edit(
+                place, value, span, "parentheses", _ENCLOSED + _MISSING_RATHER * alone, told, shown
+            )
         if quotient:
             return
         term = front
@@ -606,7 +611,10 @@ def _enclosed_further(line: Line, place: Place, at: int) -> None:
                 span = (start, end, f"({line.source[start:end]})")
                 told = N_("{old} should be {new}")
                 value = _with_last(before, sum_, value)
-                line.edit(place, value, span, "parentheses", _ENCLOSED, told, shown)
+                outside = [old[:cut].strip(" */"), old[stop:].strip(" */")]
+                alone = not count and all(map(_is_one_factor, filter(None, outside)))
+                cost = _ENCLOSED + _MISSING_RATHER * (alone and "" in outside)
+                line.edit(place, value, span, "parentheses", cost, told, shown)
         if before is None:
             return
         inside = inside - first.value if _takes_away(sum_) else inside + first.value
@@ -616,6 +624,22 @@ def _enclosed_further(line: Line, place: Place, at: int) -> None:
 def _is_closed(text: str) -> bool:
     """Whether as many parentheses end in a piece of text as begin there."""
     return text.count("(") == text.count(")")
+
+
+def _outside(text: str) -> str:
+    """What stands outside of parentheses, of which there may be some in others."""
+    text = text.strip()
+    while text.startswith("(") and closes(text) == len(text) - 1:
+        text = text[1:-1].strip()
+    before = ""
+    while text != before:
+        before, text = text, re.sub(r"\([^()]*[-+][^()]*\)", "", text)
+    return text
+
+
+def _is_one_factor(text: str) -> bool:
+    """Whether it is a name, a number, or a sine: that is rather missing in the other term."""
+    return bool(re.fullmatch(r"1\s*/\s*\d|[\d.]+|[A-Za-z]\w*(?:\([^()]*\))?", text))
 
 
 def _is_plain(text: str) -> bool:
