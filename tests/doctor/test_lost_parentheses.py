@@ -113,3 +113,36 @@ def test_what_is_written_is_what_was_tried(monkeypatch) -> None:
         assert sure.any(), text
         np.testing.assert_allclose(value[sure], typed[sure], rtol=1e-6, atol=1e-9, err_msg=text)
     assert len(tried) > 150
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "text", "said"),
+    [
+        (
+            "planar3r",
+            "c3",
+            "c3 = l1*l3*m3*qd1^2*sin(q2+q3)/2 + l2*l3*m3*qd1^2/2"
+            " + l2*l3*m3*qd1*qd2*sin(q3) + l2*l3*m3*qd2^2*sin(q3)/2",
+            "c3: the factor sin(q3) is missing in l2*l3*m3*qd1^2/2 ",
+        ),
+        (
+            "planar2r_rods",
+            "T",
+            "T = 1/2*m1*lc1^2*qd1^2 + I1*qd1^2 + 1/2*I2*(qd1+qd2)^2"
+            " + 1/2*m2*(l1^2*qd1^2 + lc2^2*(qd1+qd2)^2 + 2*l1*lc2*qd1*(qd1+qd2)*cos(q2))",
+            "T: I1*qd1^2 should be I1*qd1^2/2 ",
+        ),
+        (
+            "planar3r",
+            "c3",
+            "c3 = 2.*(l3.*m3.*(l1.*qd(1).^2.*sin(q(2) + q(3))/2 + l2.*(qd(1)+qd(2)).^2.*sin(q(3))/2))",
+            "c3: the factor 2. does not belong ",
+        ),
+        ("planar2r", "g1", "g1 = m1 + m2*g*l1*c1 + m2*g*l2*c12", "g1: m1 + m2*g*l1*c1 should be ("),
+    ],
+    ids=["sine", "half", "too many", "parentheses"],
+)
+def test_one_factor_alone_is_rather_missing_in_the_other_term(robot, entry, text, said):
+    """And a 2 in front of halves of lengths does not belong: no length is its centre's."""
+    found = kl.diagnose(robot, entry, text)
+    assert found.sentence.startswith(said), found

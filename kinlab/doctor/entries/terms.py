@@ -18,6 +18,7 @@ from kinlab.doctor.derived import POINTS, Derivation, searchable
 from kinlab.doctor.entries import regression, search
 from kinlab.doctor.entries.search import Edit, Repair
 from kinlab.doctor.linkages.looked_up import Reference
+from kinlab.doctor.text.alternatives import halves_lengths
 from kinlab.doctor.text.line import Line, Names, brief
 from kinlab.doctor.text.mend import Mended, mended, one_after_another, rewritten, together
 from kinlab.doctor.text.numbers_off import as_meant, beside_rounded, rounded_in
@@ -195,11 +196,11 @@ def in_text(
 
 
 def _or_of_rods(line: Line, found: list[Mended], plain: list[Line]) -> tuple[Line, list[Mended]]:
-    """Of a text that names no centres what is likelier where these are the rods' middles.
+    """Of a text with halves for centres what is likelier where these are the rods' middles.
 
     The 2 that does not belong in ``2*m3*l3/2``, and not lc3 for l3.
     """
-    for other in plain:
+    for other in plain if halves_lengths(line) else ():
         way = [] if other.numeric else mended(other, 1)
         if way and way[0].cost < found[0].cost - _RATHER:
             return other, way

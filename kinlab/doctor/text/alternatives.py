@@ -159,7 +159,7 @@ def _name(line: Line, place: Place, name: str) -> None:
             if same and {_letters(word), _letters(name)} in _LENGTHS:
                 cost = 1.3 if _beside_a_length(line, place) else 1.1
                 cost = 1.35 if _with_a_two(line, place) and word[-2:-1] == "c" else cost
-                cost = 1.4 if _halves_lengths(line) and word not in words_in(line.source) else cost
+                cost = 1.4 if halves_lengths(line) and word not in words_in(line.source) else cost
             line.instead(place, word, value, "index" if near else "parameter", cost)
             if not np.any(place.value):
                 continue  # what is added to nothing comes instead of it
@@ -182,7 +182,7 @@ def _letters(name: str) -> str:
     return re.sub(r"[\d_]+", "", name)
 
 
-def _halves_lengths(line: Line) -> bool:
+def halves_lengths(line: Line) -> bool:
     """Whether a text has ``l/2`` for the centres of rods: they have no names of their own then."""
     names = {_letters(word) for word in words_in(line.source)}
     return not names & _CENTRES and bool(re.search(r"/ *[24]\b|0\.(?:5|25)\b", line.source))
