@@ -639,7 +639,9 @@ def _outside(text: str) -> str:
 
 def _is_one_factor(text: str) -> bool:
     """Whether it is a name, a number, or a sine: that is rather missing in the other term."""
-    return bool(re.fullmatch(r"1\s*/\s*\d|[\d.]+|[A-Za-z]\w*(?:\([^()]*\))?", text))
+    if re.fullmatch(r"[(\s]*1[)\s]*/[(\s]*\d[)\s]*", text):
+        return True
+    return bool(re.fullmatch(r"[\d.]+|[A-Za-z]\w*(?:\([^()]*\))?", text))
 
 
 def _is_plain(text: str) -> bool:

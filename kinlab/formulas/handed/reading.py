@@ -13,6 +13,7 @@ from kinlab.formulas.handed.code import (
 )
 from kinlab.formulas.handed.columns import of_column
 from kinlab.formulas.handed.constants import without_constant
+from kinlab.formulas.handed.displays import with_displays_inline
 from kinlab.formulas.handed.letters import plain_letters, siciliano_s_letters, without_marks
 from kinlab.formulas.handed.rates import MOVING, plain_rates
 from kinlab.formulas.handed.units import with_units_inside, without_units
@@ -211,7 +212,7 @@ def as_formula(
         ExpressionError: what can be read in two ways, or a clause that is not so.
     """
     refuse_nested(text, place)
-    text = _AND_SO_ON.sub("", as_typed(text))
+    text = with_displays_inline(_AND_SO_ON.sub("", as_typed(text)))
     unjudged = _("the step {words!r} was not judged")
     steps = [unjudged.format(words=one[0].strip("=& ")) for one in STEP.finditer(text)]
     text, label = _without_label(_MIRRORED.sub("", _as_asked(_unlisted(of_packages(text)), entry)))

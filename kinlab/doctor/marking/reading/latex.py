@@ -13,6 +13,7 @@ from kinlab.doctor.marking.reading.pieces import Piece, is_formula
 from kinlab.doctor.marking.reading.text import pieces_of_text
 from kinlab.doctor.marking.sheet import Sheet
 from kinlab.errors import FileError
+from kinlab.formulas.handed.displays import rows_of
 from kinlab.formulas.typed import bare
 from kinlab.host.language import _
 
@@ -32,7 +33,6 @@ _OWN = re.compile(
     r"\{((?:[^{}\n]|\{[^{}\n]*\}){0,200})\}"
 )
 _COMMANDS, _LARGEST = 40, 1 << 19
-_INSIDE = re.compile(r"\\begin\{(\w*matrix|array|aligned|split)\}.*?\\end\{\1\}", re.DOTALL)
 _TITLE = re.compile(
     r"\\(?:(?:sub){0,2}section|(?:sub)?paragraph|chapter|part|subsubsection)\*?\s*\{([^{}\n]*)\}"
 )
@@ -70,7 +70,7 @@ def pieces_of_latex(text: str, labels: SheetLabels, sheet: Sheet) -> tuple[list[
         pieces += written
         end = found.end()
         formula = next(v for k, v in found.groupdict().items() if k != "env" and v is not None)
-        for row in _rows(formula):
+        for row in rows_of(formula):
             if "=" in row or (under and is_formula(row)):
                 pieces.append(Piece(f"${bare(row)}$", "", under))
     return [*pieces, *_between(text[end:], labels, under)[1]], 0
@@ -119,19 +119,3 @@ def _between(text: str, labels: SheetLabels, under: str) -> tuple[str, list[Piec
         elif line.startswith("#") and re.search(r"\d", line):
             under = ""
     return under, pieces
-
-
-def _rows(formula: str) -> list[str]:
-    r"""The lines of an ``align``; what is broken inside a matrix stays whole."""
-    matrices = [m[0] for m in _INSIDE.finditer(formula)]
-    held = formula
-    for k, matrix in enumerate(matrices):
-        held = held.replace(matrix, f"\x01{k}\x01", 1)
-    lines: list[str] = []
-    for part in re.split(r"\\\\(?:\[[^\]]*\])?", held):
-        line = part.replace("&", " ").strip()
-        if lines and line and "=" not in line:  # a sum goes on
-            lines[-1] += f" {line}"
-        elif line:
-            lines.append(line)
-    return [re.sub("\x01(\\d+)\x01", lambda m: matrices[int(m[1])], line) for line in lines]
