@@ -33,6 +33,11 @@ _REMARK = re.compile(r"(?m)(?:^|[ \t])#(?![\d{])[^\n]*$")
 _LONG_WORD = re.compile(r"[A-Za-z]{3}|[\u4e00-\u9fff]")
 _STATE = r"(?:q|qd|qdd|dq|ddq|th|theta|thd|thetad|θ|t|v|a)_?\d?"
 _LAMBDA = re.compile(rf"^(\s*\w+\s*=\s*)?lambda\s+{_STATE}(?:\s*,\s*{_STATE})*\s*:\s*(?=\S)")
+_HANDLE = re.compile(rf"^(\s*\w+\s*=\s*)?@\(\s*{_STATE}(?:\s*,\s*{_STATE})*\s*\)\s*(?=\S)")
+"""A function of MATLAB's without a name of its own: ``x = @(q1, q2) ...``."""
+_UNPACKED = re.compile(r"^[ \t]*\w+\d(?:[ \t]*,[ \t]*\w+\d)+[ \t]*=[ \t]*[A-Za-z]+[ \t]*$")
+"""What takes the joints out of their row: ``q1, q2 = q``."""
+_GIVEN_BACK = re.compile(r"return[ \t]+(\w+)[ \t;]*")
 _DEFINED = re.compile(
     rf"^\s*def\s+(\w+)\s*\(\s*(?:self\s*,\s*)?{_STATE}(?:\s*,\s*{_STATE})*\s*\)[^:\n]*:\s*"
 )
@@ -274,11 +279,16 @@ def _with_point(found: re.Match[str], text: str) -> str:
 def _of_function(text: str) -> str:
     """What a function answers, with the lines before."""
     text = _LAMBDA.sub(lambda found: found[1] or "", _IMPORT.sub("", text))
+    text = _HANDLE.sub(lambda found: found[1] or "", text)
     found = _DEFINED.match(text)
     if found is None:
         return text
-    body = text[found.end() :]
-    return _RETURN.sub("", "\n".join(line.strip() for line in body.split("\n") if line.strip()))
+    lines = [line.strip() for line in text[found.end() :].split("\n") if line.strip()]
+    lines = [line for line in lines if not _UNPACKED.match(line)]
+    back = _GIVEN_BACK.fullmatch(lines[-1]) if len(lines) > 1 else None
+    if back is not None and re.match(rf"{back[1]}[ \t]*=(?!=)", lines[-2]):
+        lines.pop()  # it was set in the line above
+    return _RETURN.sub("", "\n".join(lines))
 
 
 def _one_each(line: str) -> str:

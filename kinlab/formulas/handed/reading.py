@@ -179,6 +179,14 @@ _HENCE = re.compile(
     re.IGNORECASE,
 )
 """What follows, behind what is explained: ``where y = ... . Hence U = ...``."""
+_ANGLE_BELOW = r"\\?(?:var)?(?:theta|phi|q|θ|φ)_?(?:\d|\{\d{1,4}\})"
+_WAVE_OF_ANGLES = re.compile(
+    rf"(?<![A-Za-z\\_])([csCS])_\{{\s?({_ANGLE_BELOW}(?:\s?\+\s?{_ANGLE_BELOW}){{0,5}})\s?\}}"
+)
+_PRIMED = re.compile(
+    r"(\\(?:var)?(?:theta|phi)_(?:\d|\{\d\})|(?<![A-Za-z\\])q_(?:\d|\{\d\}))('{1,2})(?!')"
+)
+"""A joint of LaTeX's with primes for its rate."""
 _AND_SO_ON = re.compile(
     r"(?:\\[ ,;:!]|\\q?quad|[\s,;~]){0,6}"
     r"(?:\\(?:text|mbox|textrm|mathrm)\s?\{\s*(?:usw|etc|u\.\s?s\.\s?w)\.?\s*\}|(?<=[\s,;])(?:usw|etc)\.)"
@@ -212,7 +220,7 @@ def as_formula(
         ExpressionError: what can be read in two ways, or a clause that is not so.
     """
     refuse_nested(text, place)
-    text = with_displays_inline(_AND_SO_ON.sub("", as_typed(text)))
+    text = _with_joints_below(with_displays_inline(_AND_SO_ON.sub("", as_typed(text))))
     unjudged = _("the step {words!r} was not judged")
     steps = [unjudged.format(words=one[0].strip("=& ")) for one in STEP.finditer(text)]
     text, label = _without_label(_MIRRORED.sub("", _as_asked(_unlisted(of_packages(text)), entry)))
@@ -281,6 +289,16 @@ _INDEX = re.compile(r"\w+\[(\d)\]")
 
 
 _LISTED = re.compile(r"\s*(?:(?:np|numpy|sp|sympy)\.)?(?:(?:array|Matrix)\s*\()?\s*(?=\[)")
+
+
+def _with_joints_below(text: str) -> str:
+    """``c_{12}`` for ``c_{\\theta_1 + \\theta_2}``, and dots for the primes of LaTeX's joints."""
+    text = _WAVE_OF_ANGLES.sub(
+        lambda found: f"{found[1]}_{{{''.join(re.findall(r'[0-9]', found[2]))}}}", text
+    )
+    return _PRIMED.sub(
+        lambda found: rf"\{'dd' if len(found[2]) > 1 else 'd'}ot{{{found[1]}}}", text
+    )
 
 
 def _unlisted(text: str) -> str:

@@ -52,7 +52,7 @@ _TABLE = (
     (r"jacobian(?:_tool)? 4:6?,(?P<k>\d)", f"J{_ANGULAR}<k>"),
     (r"fivebar_jacobian (?P<k>\d)", "J<k>"),
     (r"fivebar_leg_angles", "theta|q|alpha|phi"),
-    (r"fk (?P<x>[123]),4", "p?<x>"),
+    (r"fk (?P<x>[123]),4", "p?<x>(?:e|E|ee|EE|tcp|TCP|tool)?"),
 )
 """Quantities with their places, and what books call these."""
 _ROWS = tuple((re.compile(asked), names) for asked, names in _TABLE)
