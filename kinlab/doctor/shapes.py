@@ -93,6 +93,10 @@ def in_full(file: FormulaFile, robot: Mechanism) -> tuple[FormulaFile, str]:
             rates = ", ".join(_RATES[k] for k in _IN_THE_PLANE)
             told = _("its rows are read as {rows}").format(rows=rates)
             return _renamed(file, places, head, _IN_THE_PLANE, range(robot.n)), told
+        every = {(i, j) for i in range(len(_RATES)) for j in range(robot.n)}
+        if head == "J" and is_planar(robot.table) and {*places} == every:
+            told = _("its rows are read as {rows}").format(rows=", ".join(_RATES))
+            return _renamed(file, places, "jacobian", range(6), range(robot.n)), told
         size = max((k + 1 for place in places for k in place), default=0)
         if size < 3 or len(places) != size * size:
             continue
@@ -163,7 +167,8 @@ def _renamed(
     names = {}
     for (i, j), entry in places.items():
         row, column = rows[i], columns[j]
-        names[entry] = f"{head}[{row},{column}]" if "[" in entry else f"{head}{row + 1}{column + 1}"
+        indexed = "[" in entry or not entry.startswith(head)
+        names[entry] = f"{head}[{row},{column}]" if indexed else f"{head}{row + 1}{column + 1}"
     return replace(
         file,
         formulas={names.get(entry, entry): node for entry, node in file.formulas.items()},

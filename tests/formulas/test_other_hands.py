@@ -45,3 +45,11 @@ def test_another_frame_s_coordinate_is_another():
     """``x_1`` is no end effector's."""
     with pytest.raises(kl.KinlabError, match="another"):
         kl.diagnose("planar2r", "x", "x_1 = l1*cos(q1) + l2*cos(q1+q2)")
+
+
+def test_a_planar_arm_s_jacobian_may_have_all_six_rows():
+    rows = "[-l1*s1 - l2*s12, -l2*s12; l1*c1 + l2*c12, l2*c12; 0, 0; 0, 0; 0, 0; 1, 1]"
+    found = kl.diagnose("planar2r", "J", rows)
+    assert found.agrees and "vx, vy, vz, wx, wy, wz" in " ".join(found.remarks)
+    wrong = kl.diagnose("planar2r", "J", rows.replace("1, 1]", "1, 0]"))
+    assert wrong.sentence.startswith("J62: 0 should be 1"), wrong
