@@ -286,8 +286,9 @@ def _of_function(text: str) -> str:
     lines = [line.strip() for line in text[found.end() :].split("\n") if line.strip()]
     lines = [line for line in lines if not _UNPACKED.match(line)]
     back = _GIVEN_BACK.fullmatch(lines[-1]) if len(lines) > 1 else None
-    if back is not None and re.match(rf"{back[1]}[ \t]*=(?!=)", lines[-2]):
-        lines.pop()  # it was set in the line above
+    above = re.match(rf"{back[1]}[ \t]*=(?!=)[ \t]*", lines[-2]) if back else None
+    if above is not None:  # whatever it is called there
+        lines[-2:] = [lines[-2][above.end() :]]
     return _RETURN.sub("", "\n".join(lines))
 
 

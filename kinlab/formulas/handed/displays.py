@@ -52,6 +52,13 @@ def _side_by_side(row: str) -> list[str]:
     return [f"{one}{other}".strip().rstrip(",;") for one, other in pairs]
 
 
+def shown_apart(display: str) -> list[str]:
+    """The equations of a display between dollars, if each is a name's; else the display itself."""
+    found = _DISPLAY.fullmatch(display.strip())
+    rows = _inline(found).split("\n") if found else []
+    return [row.rstrip(",") for row in rows if row] if len(rows) > 1 else [display]
+
+
 def with_displays_inline(text: str) -> str:
     """A text whose displayed equations stand between dollars, one to a line, beside another one.
 

@@ -7,6 +7,8 @@ from collections.abc import Iterator, Sequence
 
 from kinlab.doctor.marking.reading.labels import SheetLabels
 from kinlab.doctor.marking.reading.pieces import Piece, is_formula, is_no_answer
+from kinlab.formulas.handed.code import without_code
+from kinlab.formulas.handed.displays import shown_apart
 
 _SPAN = re.compile(
     r"(?<![\\$])\$(?!\$)([^$\n]+)\$(?!\$)|\$\$([^$]+)\$\$|\\\((.*?)\\\)|\\\[(.*?)\\\]"
@@ -15,6 +17,7 @@ _CODE = re.compile(r"`([^`]+)`")
 _STRUCK = re.compile(r"~~.*?~~")
 _RULE = re.compile(r"\s*(?:```.*|~~~.*|[-=*_\s]{3,}|\|?[\s:|-]+\|[\s:|-]*)")
 _ITEM = re.compile(r"\s*(?:[*•·]\s+|[-+–—]\s+(?=[^=]{1,40}=))")
+_FENCE, _DEFINES = re.compile(r"\s*(?:```|~~~)"), re.compile(r"\s*def\s+\w+\s*\(")
 _GOES_ON = re.compile(r"(?:\.{3}|(?<!\\)\\)[ \t]*$")
 """The end of a line that goes on in the next one, in MATLAB and in Python."""
 _SIGN = re.compile(r"[*/^+=]")
@@ -33,6 +36,9 @@ def pieces_of_text(lines: Sequence[str], labels: SheetLabels) -> tuple[list[Piec
     pieces: list[Piece] = []
     under, words, goes_on = "", 0, False
     for line in _whole(lines):
+        if "\n" in line:  # a function
+            pieces.append(Piece(without_code(line, True), "", under))
+            continue
         if not line or _RULE.fullmatch(line[:_MOST]):
             continue
         line = _STRUCK.sub(" ", line) if "~~" in line else line
@@ -53,7 +59,8 @@ def pieces_of_text(lines: Sequence[str], labels: SheetLabels) -> tuple[list[Piec
             last = pieces[-1]
             pieces[-1] = Piece(f"{last.text} {line}", last.key, last.under, last.sure)
         elif "=" in line or is_formula(line) or _SPAN.search(line) or is_no_answer(line):
-            pieces += [Piece(formula, "", under) for formula in _formulas(line, bool(under))]
+            every = [one for x in _formulas(line, bool(under)) for one in shown_apart(x)]
+            pieces += [Piece(formula, "", under) for formula in every]
             goes_on = True
         else:
             words += 1
@@ -66,6 +73,11 @@ def _whole(lines: Sequence[str]) -> Iterator[str]:
     k = 0
     while k < len(lines):
         line, end = lines[k], k
+        last = _function_from(lines, k)
+        if last:
+            yield "\n".join(lines[k + 1 : last])
+            end = last
+            line = ""
         if _is_open(line):
             held = line
             for end in range(k + 1, min(k + _MOST, len(lines))):
@@ -75,6 +87,17 @@ def _whole(lines: Sequence[str]) -> Iterator[str]:
             line, end = (line, k) if _is_open(held) else (held, end)
         yield line
         k = end + 1
+
+
+def _function_from(lines: Sequence[str], k: int) -> int:
+    """Where the fence closes that opens on a line, if a function of Python's is inside; else 0."""
+    if not _FENCE.match(lines[k]):
+        return 0
+    for end in range(k + 1, min(k + _MOST, len(lines))):
+        if _FENCE.match(lines[end]):
+            inside = lines[k + 1 : end]
+            return end if any(_DEFINES.match(line) for line in inside) else 0
+    return 0
 
 
 def _is_open(text: str) -> bool:
