@@ -37,7 +37,7 @@ from kinlab.doctor.linkages.as_right import times
 from kinlab.doctor.linkages.mechanisms import mechanism
 from kinlab.doctor.program.elsewhere import lines_elsewhere
 from kinlab.doctor.program.words import lines
-from kinlab.doctor.text.claims import VECTORS, claimed_of
+from kinlab.doctor.text.claims import VECTORS, claimed_of, whole_of
 from kinlab.doctor.text.claims import alone as alone_of
 from kinlab.errors import ExpressionError, KinlabError
 from kinlab.fivebar import FiveBar
@@ -50,6 +50,7 @@ from kinlab.formulas.tree import Node
 from kinlab.formulas.tree import Path as Way
 from kinlab.formulas.typeset import Marks, equation
 from kinlab.host.language import _
+from kinlab.tolerances import TOLERANCES
 
 FEWEST = 10
 """States that a diagnosis needs at least."""
@@ -90,7 +91,10 @@ def diagnose(
         judged = examine_formulas(file, arm, whole(samples, "samples", FEWEST), seed_of(seed))
         refuse_unjudged(judged)
         wrong = [one for one in judged if not one.agrees]
-        return _of_all(wrong) if wrong else _all_right(judged)
+        found = _of_all(wrong) if wrong else _all_right(judged)
+        lacking = _not_given(arm, quantity, file)
+        said = _("not given, and not judged: {entries}").format(entries=", ".join(lacking))
+        return replace(found, remarks=(*found.remarks, said)) if lacking else found
     need_function(function)
     plain, index = split_name(quantity if "[" in quantity else _in_full(quantity, robot))
     case, engine = prepare(robot, plain, index, samples, seed)
@@ -102,6 +106,31 @@ def diagnose(
     )
     hand = np.asarray(stacked(None, *case.arguments.values()))
     return _of_answers(case, hand, engine, quantity, function_name(function))
+
+
+def _not_given(arm: Mechanism, quantity: str, file: FormulaFile) -> list[str]:
+    """The entries of a whole that its formulas, which are named one by one, do not give.
+
+    What is zero everywhere need not be given, nor of M what stands across the diagonal.
+    """
+    if isinstance(arm, FiveBar) or file.matrices:
+        return []
+    wanted = quantity if quantity in quantities() else whole_of(quantity, arm.table)
+    try:
+        places = [split_name(claimed_of(entry, arm)) for entry in file.formulas]
+    except ExpressionError:
+        return []
+    given = {index for plain, index in places if plain == wanted and index}
+    if not given or len(given) < len(places):
+        return []
+    engine = prepare(arm, wanted, (), FEWEST, 0)[1]
+    there = {
+        (*map(int, place),)
+        for place in np.argwhere(np.max(np.abs(engine), axis=0) > TOLERANCES.vanishes)
+    }
+    across = {place[::-1] for place in given} if wanted == "mass_matrix" else set()
+    left = sorted(there - given - across)
+    return [shown_entry(f"{wanted}[{','.join(map(str, place))}]") for place in left]
 
 
 def _of_answers(case: Case, hand: Array, engine: Array, quantity: str, name: str) -> Diagnosis:

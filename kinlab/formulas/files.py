@@ -31,6 +31,7 @@ from typing import Any
 from kinlab.errors import ExpressionError, FileError
 from kinlab.formulas import grids, tree, typed
 from kinlab.formulas.handed.columns import with_matrices
+from kinlab.formulas.handed.displays import in_lines
 from kinlab.formulas.handed.equations import solved
 from kinlab.formulas.handed.rates import MOVING
 from kinlab.formulas.handed.reading import as_formula
@@ -236,7 +237,8 @@ def _formula_file(
             remarks[key] = "; ".join(filter(None, (remarks[key], said)))
         doubts[key] = text, told
         entries[key] = typed.as_column(entries[key], key)
-        parts = {} if key in whole else typed.several(entries[key], key)
+        parts = {} if key in whole else typed.several(in_lines(entries[key]), key)
+        parts = parts if parts or key in whole else typed.several(entries[key], key)
         if parts and not parts.keys() & entries.keys():
             del entries[key]
             entries |= parts

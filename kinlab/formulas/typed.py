@@ -653,7 +653,7 @@ def explains_another(line: str, lines: list[str]) -> bool:
         line: an equation.
         lines: all there are.
     """
-    name = line.partition("=")[0]
+    name = line.partition("=")[0].strip("& ")
     return any(stands_in(name, right) for right in _rights(tuple(lines)))
 
 
@@ -721,7 +721,7 @@ def several(text: str, entry: str) -> dict[str, str]:
         Each with the equations that explain the writer's own names; empty where none, or only
         one, is an entry of the whole, and where a line has no name: nobody knows whose it is.
     """
-    cut, writing = _equations(text), hand([text])
+    cut, writing = _in_dollars(text) or _equations(text), hand([text])
     lines = [line for line in cut if "=" in line]
     named: dict[str, str] = {}
     own: list[str] = []
@@ -730,8 +730,9 @@ def several(text: str, entry: str) -> dict[str, str]:
         for line in lines if not places else []:
             name = entry_name(line.partition("=")[0], writing=writing)
             mine, here = _head_and_places(name)
-            if not here and any({head, mine} <= group for group in _MEANT):
-                return {}  # the whole itself
+            whole = not here and any({head, mine} <= group for group in _MEANT)
+            if whole and not explains_another(line, lines):  # as h does the entries of C
+                return {}
             own_letter = head == mine or entry not in _ONE_NUMBER  # h1 beside V is a height
             if here and own_letter and any({head, mine} <= group for group in _MEANT):
                 short = name.partition("[")[0]
@@ -745,6 +746,17 @@ def several(text: str, entry: str) -> dict[str, str]:
     named = {name: _copied(line, named, writing) for name, line in named.items()}
     dollars = "$" if is_latex(text) else ""
     return {name: f"{dollars}{'; '.join([*own, line])}{dollars}" for name, line in named.items()}
+
+
+_DOLLARS = re.compile(r"\$\$?([^$]+)\$\$?")
+
+
+def _in_dollars(text: str) -> list[str]:
+    """The equations of a text each of which stands between dollars of its own; else none."""
+    spans = [found.strip(" .,;") for found in _DOLLARS.findall(text)]
+    alone = text.count("$") % 2 == 0 and "=" not in _DOLLARS.sub("", text)
+    found = [span for span in spans if "=" in span]
+    return found if alone and len(found) > 1 else []
 
 
 def as_column(text: str, entry: str) -> str:

@@ -59,13 +59,18 @@ def shown_apart(display: str) -> list[str]:
     return [row.rstrip(",") for row in rows if row] if len(rows) > 1 else [display]
 
 
+def in_lines(text: str) -> str:
+    """A text whose displayed equations stand between dollars, whatever is around them."""
+    return _DISPLAY.sub(_inline, text)
+
+
 def with_displays_inline(text: str) -> str:
     """A text whose displayed equations stand between dollars, one to a line, beside another one.
 
     Only those of which each is a name's: ``$M = a + b$ with \\begin{align} a &= ...``.
     """
     rest, count = _DISPLAY.subn("", text)
-    return _DISPLAY.sub(_inline, text) if "=" in rest or count > 1 else text
+    return in_lines(text) if "=" in rest or count > 1 else text
 
 
 def _inline(found: re.Match[str]) -> str:

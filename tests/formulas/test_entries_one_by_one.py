@@ -1,0 +1,64 @@
+"""A whole matrix or vector whose entries are given one by one, in a line, in lines, in displays."""
+
+from __future__ import annotations
+
+import pytest
+
+import kinlab as kl
+
+M = (
+    r"M_{11} = (m_1+m_2)l_1^2 + m_2l_2^2 + 2m_2l_1l_2c_2",
+    r"M_{12} = M_{21} = m_2l_2^2 + m_2l_1l_2c_2",
+    r"M_{22} = m_2l_2^2",
+)
+C = (
+    r"C_{11} = -h \dot q_2",
+    r"C_{12} = -h(\dot q_1 + \dot q_2)",
+    r"C_{21} = h \dot q_1",
+    r"C_{22} = 0",
+)
+H = r"h = m_2 l_1 l_2 \sin q_2"
+ALIGNED = r" \\ ".join(one.replace("=", "&=") for one in C)
+TEXTS = {
+    "line": ", ".join(f"${one}$" for one in C) + f" with ${H}$.",
+    "front": f"With ${H}$: " + ", ".join(f"${one}$" for one in C),
+    "lines": "\n".join(f"${one}$" for one in C) + f"\nwhere ${H}$",
+    "plain": "\n".join((*C, H)),
+    "align": rf"\begin{{align}} {ALIGNED} \end{{align}} with ${H}$",
+    "one align": rf"\begin{{align}} {ALIGNED} \\ {H.replace('=', '&=')} \end{{align}}",
+    "columns": r"\begin{align} C_{11} &= -h \dot q_2, & C_{12} &= -h(\dot q_1 + \dot q_2) \\"
+    rf" C_{{21}} &= h \dot q_1, & C_{{22}} &= 0 \end{{align}} with ${H}$",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("text", TEXTS.values(), ids=TEXTS.keys())
+def test_entries_with_a_name_that_is_explained(text):
+    found = kl.diagnose("planar2r", "C", text)
+    assert found.agrees and not found.remarks, found
+    wrong = kl.diagnose("planar2r", "C", text.replace(r"\sin", r"\cos"))
+    assert wrong.sentence.startswith(r"h: \cos"), wrong
+
+
+@pytest.mark.parametrize("between", [", ", ",\n", "\n", " and "])
+def test_entries_between_dollars(between):
+    found = kl.diagnose("planar2r", "M", "Entries: " + between.join(f"${one}$" for one in M) + ".")
+    assert found.agrees and not any("not given" in one for one in found.remarks), found
+    slip = (M[0], M[1].replace("c_2", "s_2"), M[2])
+    wrong = kl.diagnose("planar2r", "M", between.join(f"${one}$" for one in slip))
+    assert wrong.sentence.startswith("M12: s_2 should be c_2"), wrong
+
+
+def test_what_is_not_given_is_told():
+    """It was passed over: what is there is right, and nobody said that it is not all."""
+    found = kl.diagnose("planar2r", "M", f"${M[0]}$, ${M[2]}$")
+    assert found.agrees and found.remarks[-1].endswith("not judged: M12, M21"), found
+    found = kl.diagnose("planar2r", "C", "\n".join((*C[:3], H)))  # C22 is zero everywhere
+    assert found.agrees and not found.remarks, found
+    found = kl.diagnose("planar2r", "J", "J11 = -l1*s1 - l2*s12; J12 = -l2*s12")
+    assert "J21, J22, J31, J32" in found.remarks[-1], found
+
+
+@pytest.mark.parametrize("words", ["For $q_2 = 0$: ", "With $m_1 = m_2 = 1$: "])
+def test_when_they_hold_is_refused(words):
+    with pytest.raises(kl.KinlabError):
+        kl.diagnose("planar2r", "M", words + ", ".join(f"${one}$" for one in M))
