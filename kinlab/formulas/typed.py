@@ -563,12 +563,23 @@ def _in_order(text: str, entry: str) -> tuple[tuple[str, ...], frozenset[str]]:
         line
         for line in lines
         if begins_with(line, entry, writing)
+        or _is_its_place(line, entry, writing)
         or (_is_meant(line, entry, writing) and not explains_another(line, lines))
     }
     lines.sort(key=lambda line: (line in gives, "=" not in line))
     if lines and lines[-1] not in gives and "=" in lines[-1]:
         lines = sorted(lines, key=lambda line: not explains_another(line, lines))
     return (*lines,), frozenset(gives)
+
+
+def _is_its_place(line: str, entry: str, writing: Hand) -> bool:
+    """Whether a line gives the entry by another book's letter: ``b_{12} = ...`` of M12."""
+    with suppress(ExpressionError):
+        head, places = _head_and_places(entry_name(entry))
+        mine, here = _head_and_places(entry_name(line.partition("=")[0], writing=writing))
+        alike = any({head, mine} <= group for group in _MEANT)
+        return "=" in line and len(places) > 1 and here == places and alike
+    return False
 
 
 def lines_before(text: str, entry: str, given: Container[str]) -> list[str]:
@@ -929,14 +940,24 @@ def _rests_on(part: str, given: Container[str]) -> bool:
     return False
 
 
+_NEW_LINE = re.compile(
+    r"(?:\n|\\\\(?:\[[\w. ]{0,9}\])?)(?:[&\s]|\\[,;:! ]|\\q?quad(?![A-Za-z])){0,20}+"
+    r"(?=[^\s+*/·^)\]}&=\\-]|\\[A-Za-df-z])"
+)
+
+
 def _is_of_two_lines(part: str) -> bool:
-    """Whether another equation begins on a new line within what stands between two signs."""
-    for found in re.finditer(r"\n\s*(?![\s+*/·^)\]}-])", part.strip()):
-        front = part.strip()[: found.start()]
+    """Whether another equation begins on a new line within what stands between two signs.
+
+    Or in an environment that is opened there and not closed.
+    """
+    part = part.strip()
+    for found in _NEW_LINE.finditer(part):
+        front = part[: found.start()]
         inside = front.count("\\begin") != front.count("\\end")
         if not inside and sum(map(front.count, "([{")) == sum(map(front.count, ")]}")):
             return True
-    return False
+    return part.count("\\begin{aligned}") > part.count("\\end{aligned}")
 
 
 def _is_formula(text: str) -> bool:

@@ -62,3 +62,60 @@ def test_what_is_not_given_is_told():
 def test_when_they_hold_is_refused(words):
     with pytest.raises(kl.KinlabError):
         kl.diagnose("planar2r", "M", words + ", ".join(f"${one}$" for one in M))
+
+
+VECTORS = {
+    "g": (r"(m_1+m_2) g l_1 c_1 + m_2 g l_2 c_{12}", r"m_2 g l_2 c_{12}"),
+    "p": (
+        r"(m_1+m_2)l_1^2\dot q_1 + m_2l_2^2(\dot q_1+\dot q_2) + m_2l_1l_2c_2(2\dot q_1+\dot q_2)",
+        r"m_2l_2^2(\dot q_1+\dot q_2) + m_2l_1l_2c_2\dot q_1",
+    ),
+}
+SQUARES = {
+    "M": (M[0].split(" = ")[1], M[1].split(" = ")[2], M[1].split(" = ")[2], M[2].split(" = ")[1]),
+    "J": ("-l_1s_1-l_2s_{12}", "-l_2s_{12}", "l_1c_1+l_2c_{12}", "l_2c_{12}"),
+}
+LETTERS = {"g": ["g", "G", r"\phi"], "p": ["p", "P"], "M": [*"MDHBdbh"], "J": ["J", "j"]}
+LAID_OUT = {
+    "align": lambda eqs: rf"\begin{{align}} {_rows(eqs)} \end{{align}}",
+    "aligned": lambda eqs: rf"\[ \begin{{aligned}} {_rows(eqs)} \end{{aligned}} \]",
+    "breaks": r" \\ ".join,
+    "lines": "\n".join,
+    "dollars": lambda eqs: ", ".join(f"${one}$" for one in eqs),
+    "semicolons": "; ".join,
+}
+
+
+def _rows(eqs):
+    return r" \\ ".join(one.replace("=", "&=", 1) for one in eqs)
+
+
+@pytest.mark.parametrize("laid_out", LAID_OUT.values(), ids=LAID_OUT.keys())
+@pytest.mark.parametrize(("asked", "letter"), [(x, y) for x in LETTERS for y in LETTERS[x]])
+def test_one_of_several_right_ones_is_never_called_wrong(asked, letter, laid_out):
+    r"""``b_{11} = ... \\ b_{12} = ...`` was taken for a chain of equalities of M11."""
+    if asked in VECTORS:
+        named = {f"{k + 1}": right for k, right in enumerate(VECTORS[asked])}
+    else:
+        named = dict(zip(("11", "12", "21", "22"), SQUARES[asked], strict=True))
+    text = laid_out([f"{letter}_{{{place}}} = {right}" for place, right in named.items()])
+    agreed = 0
+    for place in named:
+        try:
+            found = kl.diagnose("planar2r", f"{asked}{place}", text)
+        except kl.KinlabError:
+            continue
+        assert found.agrees, (place, text, found)
+        agreed += 1
+    assert agreed or letter in ("G", "P", "j", "b", "h", "d"), text
+
+
+def test_a_matrix_and_its_entries_beside_it():
+    matrix = r"B(q) = \begin{bmatrix} b_{11} & b_{12} \\ b_{12} & b_{22} \end{bmatrix}, \qquad "
+    rows = (
+        r"b_{11} &= I_1 + m_1 r_1^2 + I_2 + m_2 (a_1^2 + r_2^2 + 2 a_1 r_2 c_2) \\"
+        r" b_{12} &= I_2 + m_2 (r_2^2 + a_1 r_2 c_2) \\ b_{22} &= I_2 + m_2 r_2^2"
+    )
+    text = rf"{matrix}\begin{{aligned}} {rows} \end{{aligned}}"
+    for entry in ("M11", "M22"):
+        assert kl.diagnose("planar2r_rods", entry, text).agrees

@@ -40,7 +40,7 @@ _LINES = re.compile(
     rf"|{ASIDE}"
 )
 """Where one step ends and another begins; words in LaTeX."""
-_GAPS = re.compile(r"\\[,;:! ]")
+_GAPS = re.compile(r"(?<!\\)\\[,;:! ]")
 _LETTER = r"(?:\\?[A-Za-z]{1,16}|[α-ωΑ-Ω𝜃𝜏])"
 _INDEX = r"(?:_?\d{1,3}(?:,\d)?[a-z]{0,3}|[₀-₉]{1,3}|_?\{[^{}=\n]{1,12}\}|_[A-Za-z]\d?)"
 _NAMED = re.compile(
