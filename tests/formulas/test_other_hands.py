@@ -41,6 +41,19 @@ def test_primes_of_a_joint_are_its_rates(joint):
     assert found.causes and found.causes[0].kinds == ("power",), found
 
 
+def test_a_primed_angle_that_is_explained_is_no_rate():
+    text = r"$\theta_1' = \pi/2 - \theta_1$, $x = l_1 \sin\theta_1' + l_2 \cos(\theta_1+\theta_2)$"
+    with pytest.raises(kl.KinlabError):
+        kl.diagnose("planar2r", "x", text)
+
+
+@pytest.mark.parametrize("names", ["q2, q1 = q", "qd1, qd2 = q", "q1, q2 = v", "l1, l2 = q"])
+def test_joints_that_are_taken_out_in_another_order_are_not_passed_over(names):
+    text = f"def tip(q):\n    {names}\n    return l1*np.cos(q1) + l2*np.cos(q1 + q2)"
+    with pytest.raises(kl.KinlabError):
+        kl.diagnose("planar2r", "x", text)
+
+
 def test_another_frame_s_coordinate_is_another():
     """``x_1`` is no end effector's."""
     with pytest.raises(kl.KinlabError, match="another"):

@@ -35,8 +35,8 @@ _STATE = r"(?:q|qd|qdd|dq|ddq|th|theta|thd|thetad|θ|t|v|a)_?\d?"
 _LAMBDA = re.compile(rf"^(\s*\w+\s*=\s*)?lambda\s+{_STATE}(?:\s*,\s*{_STATE})*\s*:\s*(?=\S)")
 _HANDLE = re.compile(rf"^(\s*\w+\s*=\s*)?@\(\s*{_STATE}(?:\s*,\s*{_STATE})*\s*\)\s*(?=\S)")
 """A function of MATLAB's without a name of its own: ``x = @(q1, q2) ...``."""
-_UNPACKED = re.compile(r"^[ \t]*\w+\d(?:[ \t]*,[ \t]*\w+\d)+[ \t]*=[ \t]*[A-Za-z]+[ \t]*$")
-"""What takes the joints out of their row: ``q1, q2 = q``."""
+_UNPACKED = re.compile(r"((?:[A-Za-z]+_?\d[ \t]*,[ \t]*)+[A-Za-z]+_?\d)[ \t]*=[ \t]*([A-Za-z]+)")
+_ANGLES = ("q", "th", "theta", "t")
 _GIVEN_BACK = re.compile(r"return[ \t]+(\w+)[ \t;]*")
 _DEFINED = re.compile(
     rf"^\s*def\s+(\w+)\s*\(\s*(?:self\s*,\s*)?{_STATE}(?:\s*,\s*{_STATE})*\s*\)[^:\n]*:\s*"
@@ -284,12 +284,23 @@ def _of_function(text: str) -> str:
     if found is None:
         return text
     lines = [line.strip() for line in text[found.end() :].split("\n") if line.strip()]
-    lines = [line for line in lines if not _UNPACKED.match(line)]
+    lines = [line for line in lines if not _takes_joints(line)]
     back = _GIVEN_BACK.fullmatch(lines[-1]) if len(lines) > 1 else None
     above = re.match(rf"{back[1]}[ \t]*=(?!=)[ \t]*", lines[-2]) if back else None
     if above is not None:  # whatever it is called there
         lines[-2:] = [lines[-2][above.end() :]]
     return _RETURN.sub("", "\n".join(lines))
+
+
+def _takes_joints(line: str) -> bool:
+    """Whether a line takes the joints out of their row in order: ``q1, q2 = q``, no ``q2, q1``."""
+    found = _UNPACKED.fullmatch(line.rstrip("; "))
+    if found is None:
+        return False
+    every = [re.sub(r"[_ \t]", "", name) for name in found[1].split(",")]
+    heads = {name[:-1] for name in every}
+    same = heads == {found[2]} or (heads <= {*_ANGLES} and found[2] in _ANGLES)
+    return same and [int(name[-1]) for name in every] == [*range(1, len(every) + 1)]
 
 
 def _one_each(line: str) -> str:

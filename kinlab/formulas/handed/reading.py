@@ -296,6 +296,8 @@ def _with_joints_below(text: str) -> str:
     text = _WAVE_OF_ANGLES.sub(
         lambda found: f"{found[1]}_{{{''.join(re.findall(r'[0-9]', found[2]))}}}", text
     )
+    if any(text[found.end() :].lstrip("& $")[:1] == "=" for found in _PRIMED.finditer(text)):
+        return text  # another angle, which is explained
     return _PRIMED.sub(
         lambda found: rf"\{'dd' if len(found[2]) > 1 else 'd'}ot{{{found[1]}}}", text
     )
