@@ -237,8 +237,9 @@ def _formula_file(
             remarks[key] = "; ".join(filter(None, (remarks[key], said)))
         doubts[key] = text, told
         entries[key] = typed.as_column(entries[key], key)
-        parts = {} if key in whole else typed.several(in_lines(entries[key]), key)
-        parts = parts if parts or key in whole else typed.several(entries[key], key)
+        ways = dict.fromkeys((in_lines(entries[key]), entries[key]))  # one where none is displayed
+        every = (typed.several(one, key) for one in ways if key not in whole)
+        parts = next(filter(None, every), dict[str, str]())
         if parts and not parts.keys() & entries.keys():
             del entries[key]
             entries |= parts

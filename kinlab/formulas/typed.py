@@ -577,7 +577,7 @@ def _is_its_place(line: str, entry: str, writing: Hand) -> bool:
     with suppress(ExpressionError):
         head, places = _head_and_places(entry_name(entry))
         mine, here = _head_and_places(entry_name(line.partition("=")[0], writing=writing))
-        alike = any({head, mine} <= group for group in _MEANT)
+        alike = _are_in_one_group(head, mine)
         return "=" in line and len(places) > 1 and here == places and alike
     return False
 
@@ -741,11 +741,12 @@ def several(text: str, entry: str) -> dict[str, str]:
         for line in lines if not places else []:
             name = entry_name(line.partition("=")[0], writing=writing)
             mine, here = _head_and_places(name)
-            whole = not here and any({head, mine} <= group for group in _MEANT)
+            alike = _are_in_one_group(head, mine)
+            whole = alike and not here
             if whole and not explains_another(line, lines):  # as h does the entries of C
                 return {}
             own_letter = head == mine or entry not in _ONE_NUMBER  # h1 beside V is a height
-            if here and own_letter and any({head, mine} <= group for group in _MEANT):
+            if alike and here and own_letter:
                 short = name.partition("[")[0]
                 named[name if short in (name, *LONG) else f"{short}{here}"] = line
             else:
@@ -1057,7 +1058,12 @@ def is_sister(name: str, entry: str) -> bool:
 
 
 def _of_one_quantity(head: str, mine: str) -> bool:
-    return head == mine or any({head, mine} <= group for group in _MEANT)
+    return head == mine or _are_in_one_group(head, mine)
+
+
+def _are_in_one_group(head: str, mine: str) -> bool:
+    """Whether both are letters that books have for one quantity, of those that are listed."""
+    return any({head, mine} <= group for group in _MEANT)
 
 
 def _also(name: str, entry: str) -> bool:
@@ -1141,7 +1147,7 @@ def _is_meant(line: str, entry: str, writing: Hand) -> bool:
     sure = (
         bool(asked[1]) or entry in _ONE_NUMBER or (bool(_MATRIX.search(right)) and own[0] != "jv")
     )
-    return sure and own[1] == asked[1] and any({own[0], asked[0]} <= group for group in _MEANT)
+    return sure and own[1] == asked[1] and _are_in_one_group(own[0], asked[0])
 
 
 def _equations(text: str) -> list[str]:

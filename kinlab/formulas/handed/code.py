@@ -32,15 +32,13 @@ _REMARK = re.compile(r"(?m)(?:^|[ \t])#(?![\d{])[^\n]*$")
 """What Python leaves out."""
 _LONG_WORD = re.compile(r"[A-Za-z]{3}|[\u4e00-\u9fff]")
 _STATE = r"(?:q|qd|qdd|dq|ddq|th|theta|thd|thetad|θ|t|v|a)_?\d?"
-_LAMBDA = re.compile(rf"^(\s*\w+\s*=\s*)?lambda\s+{_STATE}(?:\s*,\s*{_STATE})*\s*:\s*(?=\S)")
-_HANDLE = re.compile(rf"^(\s*\w+\s*=\s*)?@\(\s*{_STATE}(?:\s*,\s*{_STATE})*\s*\)\s*(?=\S)")
-"""A function of MATLAB's without a name of its own: ``x = @(q1, q2) ...``."""
+_STATES = rf"{_STATE}(?:\s*,\s*{_STATE})*"
+_LAMBDA = re.compile(rf"^(\s*\w+\s*=\s*)?(?:lambda\s+{_STATES}\s*:|@\(\s*{_STATES}\s*\))\s*(?=\S)")
+"""A function without a name of its own, also MATLAB's: ``x = @(q1, q2) ...``."""
 _UNPACKED = re.compile(r"((?:[A-Za-z]+_?\d[ \t]*,[ \t]*)+[A-Za-z]+_?\d)[ \t]*=[ \t]*([A-Za-z]+)")
 _ANGLES = ("q", "th", "theta", "t")
 _GIVEN_BACK = re.compile(r"return[ \t]+(\w+)[ \t;]*")
-_DEFINED = re.compile(
-    rf"^\s*def\s+(\w+)\s*\(\s*(?:self\s*,\s*)?{_STATE}(?:\s*,\s*{_STATE})*\s*\)[^:\n]*:\s*"
-)
+_DEFINED = re.compile(rf"^\s*def\s+(\w+)\s*\(\s*(?:self\s*,\s*)?{_STATES}\s*\)[^:\n]*:\s*")
 _RETURN = re.compile(r"^[ \t]*return\s+(?=\S)", re.MULTILINE)
 _IMPORT = re.compile(r"^[ \t]*(?:import|from)[ \t]+\w[^\n;]*(?:\n|;[ \t]*)", re.MULTILINE)
 _OWNER = re.compile(
@@ -279,7 +277,6 @@ def _with_point(found: re.Match[str], text: str) -> str:
 def _of_function(text: str) -> str:
     """What a function answers, with the lines before."""
     text = _LAMBDA.sub(lambda found: found[1] or "", _IMPORT.sub("", text))
-    text = _HANDLE.sub(lambda found: found[1] or "", text)
     found = _DEFINED.match(text)
     if found is None:
         return text

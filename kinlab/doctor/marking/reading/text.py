@@ -76,8 +76,8 @@ def _whole(lines: Sequence[str]) -> Iterator[str]:
         last = _function_from(lines, k)
         if last:
             yield "\n".join(lines[k + 1 : last])
-            end = last
-            line = ""
+            k = last + 1
+            continue
         if _is_open(line):
             held = line
             for end in range(k + 1, min(k + _MOST, len(lines))):

@@ -48,11 +48,12 @@ from kinlab.doctor.program.edits.scope.forms import statement_of, summands
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.calls import begun_as_a_copy, of_call
 from kinlab.doctor.program.edits.single.comparisons import (
-    NUMBERED,
+    is_equality,
     is_switch,
     negated,
     of_comparison,
     of_comparisons,
+    of_its_number,
 )
 from kinlab.doctor.program.edits.single.constants import of_constant, of_degrees, of_rods
 from kinlab.doctor.program.edits.single.entries import is_joined, keys_of, of_keys, of_subscript
@@ -405,7 +406,7 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Progra
     if index or counts:
         inner = isinstance(here.parent, ast.BinOp) and shifted(here.parent)
         if not isinstance(node, ast.Constant | ast.Slice | ast.Tuple) and not inner:
-            limits = isinstance(here.parent, ast.Compare) and not _equal(here.parent)
+            limits = isinstance(here.parent, ast.Compare) and not is_equality(here.parent)
             for step in (1, -1):
                 yield here.instead(plus(node, step), "index", 1.25 if limits else 1.1)
         if not index and isinstance(here.parent, ast.Call):
@@ -467,7 +468,7 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Program
     if isinstance(node, ast.If):
         if node.orelse and not is_switch(node.test):
             yield here.within(node, "test", negated(node.test), "condition", 1.2)
-        yield from _comparison_of(here, node.test)
+        yield from of_its_number(here, node.test)
     if isinstance(node, ast.Assign):
         yield from _in_degrees(here, scope, observed)
         yield from of_kinds_of_joints(here, scope)
@@ -563,18 +564,6 @@ def _for_all_joints(here: Here, scope: Scope, observed: Observed) -> Iterator[Pr
     slice_ = ast.Slice(None, plus(key, 1), None)
     before = ast.Subscript(copied(node.target.value), slice_, ast.Store())
     yield here.instead(ast.AugAssign(before, node.op, node.value), "index", 1.12)
-
-
-def _equal(test: ast.Compare) -> bool:
-    return isinstance(test.ops[0], ast.Eq | ast.NotEq)
-
-
-def _comparison_of(here: Here, test: ast.expr) -> Iterator[ProgramEdit]:
-    if isinstance(test, ast.Compare) and len(test.comparators) == 1:
-        right = test.comparators[0]
-        cost = NUMBERED if _equal(test) and whole_constant(right) else 1.25
-        for step in (1, -1):
-            yield here.within(test, "comparators", [plus(right, step)], "condition", cost)
 
 
 def _filled_beside(here: Here, target: ast.Subscript, observed: Observed) -> list[str]:

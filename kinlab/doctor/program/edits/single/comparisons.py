@@ -34,9 +34,7 @@ _KINDS = (
 """What the two kinds of joints are called."""
 _KIND = 1.03
 """Cost of the other kind of joint in a condition."""
-
-
-NUMBERED = 1.08
+_NUMBERED = 1.08
 """Cost of another joint's number in a test for one: ``i == 2`` for ``i == 3``."""
 
 
@@ -53,10 +51,8 @@ def of_comparison(here: Here) -> Iterator[ProgramEdit]:
             turned = ast.Eq() if isinstance(node.ops[0], ast.NotEq) else ast.NotEq()
             yield here.within(node, "ops", [turned], "condition", _KIND + 0.03)
         return
-    equal = isinstance(here.parent, ast.IfExp) and isinstance(node.ops[0], ast.Eq | ast.NotEq)
-    for step in (1, -1) if equal and whole_constant(node.comparators[0]) else ():
-        number = [plus(node.comparators[0], step)]
-        yield here.within(node, "comparators", number, "condition", NUMBERED)
+    if isinstance(here.parent, ast.IfExp) and _is_of_a_number(node):
+        yield from of_its_number(here, node)
     pairs = {ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt}
     other = pairs.get(type(node.ops[0]))
     if other is not None:
@@ -111,3 +107,22 @@ def negated(test: ast.expr) -> ast.expr:
     if isinstance(test, ast.Compare) and len(test.ops) == 1 and type(test.ops[0]) in _OPPOSITE:
         return ast.Compare(test.left, [_OPPOSITE[type(test.ops[0])]()], test.comparators)
     return ast.UnaryOp(ast.Not(), test)
+
+
+def of_its_number(here: Here, test: ast.expr) -> Iterator[ProgramEdit]:
+    """What a test compares with, one more and one less: ``i == 2`` for ``i == 3``."""
+    if isinstance(test, ast.Compare) and len(test.comparators) == 1:
+        cost = _NUMBERED if _is_of_a_number(test) else 1.25
+        for step in (1, -1):
+            number = [plus(test.comparators[0], step)]
+            yield here.within(test, "comparators", number, "condition", cost)
+
+
+def _is_of_a_number(test: ast.Compare) -> bool:
+    """Whether it asks for one whole number."""
+    return is_equality(test) and whole_constant(test.comparators[0])
+
+
+def is_equality(test: ast.Compare) -> bool:
+    """Whether it asks whether two are equal, or are not."""
+    return isinstance(test.ops[0], ast.Eq | ast.NotEq)
