@@ -248,7 +248,8 @@ def _formula_file(
     explained, opened = set[str](), set[str]()
     before: dict[str, list[str]] = {}
     for key, value in entries.items():
-        own, entries[key] = typed.explained(_text(value, f"{place}: {key}"), key)
+        at = f"{place}: {key}"
+        own, entries[key] = typed.explained(_text(value, at), key, at)
         explained |= own.keys()
         earlier = typed.lines_before(value, key, own) if entries[key] != value else []
         if steps := typed.unjudged_steps(value, own):
@@ -283,10 +284,7 @@ def _formula_file(
             if unused and holds is not None:
                 _refuse_untrue(name, formula, holds, f"{place}: {key}")
             if symbols.setdefault(name, formula) != formula:
-                said = N_(
-                    "{name} is explained twice; keep one, in front of the formula or in [symbols]"
-                )
-                raise refused(f"{place}: {key}", said, name=name)
+                raise refused(f"{place}: {key}", typed.EXPLAINED_TWICE, name=name)
     entries = {key: solved(value, key, f"{place}: {key}") for key, value in entries.items()}
     chains = {key: typed.readings(value, key, explained) for key, value in entries.items()}
     sides = [(key, part, "", False) for key, parts in chains.items() for part in parts[1:]]

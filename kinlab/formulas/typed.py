@@ -26,7 +26,7 @@ from kinlab.formulas.signs.letters import ABOVE, BELOW, SIGNS, WIDE, ascii_text,
 from kinlab.formulas.signs.named import is_named, is_named_elsewhere, plain_name
 from kinlab.formulas.signs.refusals import refused
 from kinlab.formulas.signs.remarks import without_remarks
-from kinlab.formulas.text import parse
+from kinlab.formulas.text import canonical, parse
 from kinlab.host.language import N_, _
 
 # -------- Which writing it is
@@ -526,18 +526,27 @@ _EDGES = re.compile(rf"^(?:[&]|{_SPACES})+|(?:[&]|{_SPACES})+$")
 _UNENDED = re.compile(r"[-+*/=](?:[&\s]|\\[,;:! ]|\\q?quad){0,9}$")
 _OWN_NAME = re.compile(r"[\\\w{} ]+")
 _NAME = re.compile(r"[A-Za-z]\w*(?:\[[\d,]+\])?")
+EXPLAINED_TWICE = N_(
+    "{name} is explained twice; keep one, in front of the formula or in [symbols]"
+)
 
 
-def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
+def explained(
+    text: str, entry: str = "", place: str = "expression"
+) -> tuple[dict[str, str], str]:
     """A formula with what its writer explains: ``h = m2*l1*l2*s2; C11 = -h*qd2``.
 
     Args:
         text: as typed.
         entry: what the formula is asked for.
+        place: what to put in front of a message.
 
     Returns:
         The writer's names with their formulas, as typed; and the formula itself: the one with the
         entry's name, the one without a name, the one in front of ``where``, or the last one.
+
+    Raises:
+        ExpressionError: a name is explained twice, and not alike.
     """
     lines, gives = _in_order(text, entry)
     own = [_ends(line) for line in lines[:-1] if line not in gives]
@@ -550,6 +559,9 @@ def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
         named = entry_name(left, writing=hand([text]))
         if not of_one_name(named, entry_name(entry)):
             return {}, text
+    for name, sides in _explaining([line for line in lines[:-1] if line not in gives]).values():
+        if _held_against_the_last(sides)[0]:
+            raise refused(place, EXPLAINED_TWICE, name=name)
     dollars = "$" if is_latex(text) else ""
     formulas = {own_name(name): f"{dollars}{bare(right)}{dollars}" for name, _sign, right in own}
     return formulas, f"{dollars}{lines[-1]}{dollars}"
@@ -620,18 +632,25 @@ def _may_be_taken(line: str) -> bool:
 
 
 def unjudged_steps(text: str, own: Container[str]) -> list[str]:
-    """The writer's names that a chain explains of which a step was held against no other.
+    """The writer's names of which a step, or an earlier line, was held against no other.
 
     Args:
         text: as typed.
         own: the names.
     """
-    found = []
-    for line in _equations(text):
-        left, *steps = line.split("=")
-        if len(steps) > 1 and _held_against_the_last(steps)[1]:
-            with suppress(ExpressionError):  # a derivative is no name
-                found += [left.strip("& ")] if own_name(left) in own else []
+    told = _explaining(_equations(text)).items()
+    return [
+        shown for name, (shown, sides) in told if name in own and _held_against_the_last(sides)[1]
+    ]
+
+
+def _explaining(lines: Iterable[str]) -> dict[str, tuple[str, list[str]]]:
+    """The writer's names, as he has them, with all that is given for each, the last at the end."""
+    found: dict[str, tuple[str, list[str]]] = {}
+    for line in lines:
+        left, *sides = line.split("=")
+        with suppress(ExpressionError):  # a derivative is no name
+            found.setdefault(own_name(left), (left.strip("& "), []))[1].extend(sides)
     return found
 
 
@@ -642,7 +661,8 @@ def _held_against_the_last(steps: list[str]) -> tuple[bool, bool]:
     nodes = []
     for step in steps:
         with suppress(ExpressionError):
-            nodes.append(parse(plain_formula(f"${step}$" if is_latex(step) else step)))
+            node = parse(plain_formula(f"${step}$" if is_latex(step) else step))
+            nodes.append(tree.renamed(node, {name: canonical(name) for name in tree.names(node)}))
     last: frozenset[str] = frozenset(tree.names(nodes[-1])) if nodes else frozenset()
     alike = [node for node in nodes if {*tree.names(node)} == last]
     at = {name: np.array([0.7 + 0.13 * k, 1.9 - 0.31 * k]) for k, name in enumerate(sorted(last))}

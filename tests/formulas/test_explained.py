@@ -212,3 +212,40 @@ def test_what_is_wrong_with_such_a_square_is_told(text, said):
 def test_a_name_of_which_only_the_square_is_explained_is_refused(text, said):
     with pytest.raises(ExpressionError, match=said):
         judged("T", text)
+
+
+TWICE = {
+    "semicolons": ("planar2r", "fk[0,3]", "a = l1*s1; b = l2*c12; a = l1*c1; T14 = a + b"),
+    "with": ("planar2r", "M22", "M22 = a with a = m2*l2 and a = m2*l2^2"),
+    "dollars": ("planar2r", "M22", "$M_{22} = a$ with $a = m_2 l_2$ and $a = m_2 l_2^2$"),
+}
+
+
+@pytest.mark.parametrize("case", TWICE.values(), ids=TWICE.keys())
+def test_a_name_that_is_explained_twice_is_told(case):
+    """The last one was taken without a word, and the first one, which is wrong, passed over."""
+    found = kl.diagnose(*case)
+    assert not found.agrees or "and no other step" in found.remarks[-1], found
+
+
+def test_a_name_that_is_explained_twice_alike_is_judged():
+    twice = "a = l1*c1; b = l2*c12; a = l1*cos(q1); x = a + b"
+    found = kl.diagnose("planar2r", "x", twice)
+    assert found.agrees and not found.remarks, found
+
+
+def test_an_earlier_explanation_by_other_names_is_told():
+    found = kl.diagnose(
+        "planar2r",
+        "T",
+        "v2^2 = u^2 + w^2; v2^2 = l1^2*qd1^2 + l2^2*(qd1+qd2)^2 + 2*l1*l2*c2*qd1*(qd1+qd2); "
+        "T = 1/2*m1*l1^2*qd1^2 + 1/2*m2*v2^2",
+    )
+    assert found.agrees and "v2^2" in "; ".join(found.remarks), found
+
+
+def test_what_is_judged_is_not_said_to_be_passed_over():
+    found = kl.diagnose("planar2r", "fk[0,3]", "x = a + b; a = l1*c1; b = l2*c12")
+    assert found.agrees and not found.remarks, found
+    found = kl.diagnose("planar2r", "fk[1,3]", "x = l1*c1 + l2*s12; y = l1*s1 + l2*s12")
+    assert found.agrees and "x" in found.remarks[-1], found

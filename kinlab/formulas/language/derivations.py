@@ -148,6 +148,7 @@ def steps_beside(text: str, entry: str) -> list[str]:
         for one in _told(text)
         if _OF_LETTERS.search(one.right)
         and not is_name_of(one.name, entry)
+        and not begins_with(f"{one.name} = 0", entry)  # x is an entry of T, and no name of it
         and not is_sister(one.name, entry)
         and not (len(one.name) > 1 and is_linking(one.name))
     ]
