@@ -19,7 +19,7 @@ module            what it holds
 ``rounding``      Rounded numbers of a function and of the robot's data, and whether they explain a
                   difference
 ``shapes``        Matrices of fewer rows than the engine's: a planar arm's 3 x 3 pose, a SCARA's
-                  4 x 4 Jacobian
+                  4 x 4 Jacobian; one entry that is asked for, of a whole that is given
 ``slips``         Slips of the pen in the entries that are off, alone or after a reading of the
                   whole answer
 ``solved``        Forward dynamics of an arm as a reference: the accelerations that its equations

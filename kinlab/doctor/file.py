@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -20,7 +21,7 @@ from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.glossary.facts import holding
 from kinlab.doctor.linkages import as_right, five_bar
 from kinlab.doctor.linkages.mechanisms import mechanism_beside
-from kinlab.doctor.shapes import in_full, last_joint, parts_of
+from kinlab.doctor.shapes import entry_of, in_full, last_joint, parts_of, wholes_of
 from kinlab.doctor.text.claims import alone, claimed_of, named_alone, with_forces, with_wrench
 from kinlab.doctor.text.habits import with_habits
 from kinlab.doctor.text.joints import joint_values
@@ -799,7 +800,18 @@ def of_robot(document: Mapping[str, Any], path: str, robot: Mechanism) -> Formul
         FileError, ExpressionError: the document holds no formulas, or what is none.
     """
     known = holding(robot), parts_of(robot), last_joint(robot)
-    return formula_file(document, path, None, *known)
+    try:
+        return formula_file(document, path, None, *known)
+    except ExpressionError:
+        entries = document.get("formulas", {})
+        entry, text = next(iter(entries.items())) if len(entries) == 1 else ("", "")
+        for whole in wholes_of(entry, str(text), robot):
+            with suppress(ExpressionError):
+                given = {**document, "formulas": {whole: text}}
+                file = formula_file(given, path, None, *known)
+                require_whole(as_judged(file, robot), robot)
+                return entry_of(file, entry, robot)
+        raise
 
 
 def robot_of(file: FormulaFile) -> Mechanism:

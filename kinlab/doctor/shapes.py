@@ -1,10 +1,14 @@
-"""Matrices of fewer rows than the engine's: a planar arm's 3 x 3 pose, a SCARA's 4 x 4 Jacobian."""
+"""Matrices and their entries: of fewer rows than the engine's (a planar arm's 3 x 3 pose, a SCARA's
+4 x 4 Jacobian), and one entry that is asked for of a whole that is given (M12 of ``M = ...``).
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -12,7 +16,8 @@ from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.check.quantities.registry import split_name
 from kinlab.check.quantities.special import square_rows
 from kinlab.doctor.changes import Mechanism
-from kinlab.errors import KinlabError, StructureError
+from kinlab.doctor.text.claims import claimed_of
+from kinlab.errors import ExpressionError, KinlabError, StructureError
 from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree
 from kinlab.formulas.files import FormulaFile, PartsOf
@@ -174,5 +179,71 @@ def _renamed(
         formulas={names.get(entry, entry): node for entry, node in file.formulas.items()},
         texts={names.get(entry, entry): text for entry, text in file.texts.items()},
         as_typed={names.get(entry, entry): text for entry, text in file.as_typed.items()},
+        matrices={},
+    )
+
+
+# -------- One entry of a whole
+
+_OF_A_POINT = ("fk[:2,3]", "fk[:3,3]", "planar_pose")
+"""The columns that a coordinate of the tool may stand in; without a name they say nothing."""
+
+
+_NAMED = re.compile(r"=[^=]*(?:\[|\\begin|diag|array|Matrix)")
+"""A matrix behind a sign of equality: a list without a name may be a formula and a remark."""
+
+
+def wholes_of(entry: str, text: str, robot: Mechanism) -> Iterator[str]:
+    """The quantities, whole or a column of one, of which an entry may be given.
+
+    Args:
+        entry: what is asked for: ``M12``, ``fk[0,3]``.
+        text: what is given, as typed.
+        robot: whose it is.
+    """
+    if isinstance(robot, FiveBar) or not _NAMED.search(text):
+        return
+    with suppress(ExpressionError):
+        plain, bracket, place = claimed_of(entry, robot).partition("[")
+        if bracket and ":" not in place:
+            if plain == "fk" and place.endswith(",3]"):
+                yield from _OF_A_POINT
+            yield plain
+
+
+def entry_of(file: FormulaFile, entry: str, robot: Mechanism) -> FormulaFile:
+    """A file of a whole with one of its entries alone.
+
+    Args:
+        file: as it was read.
+        entry: what was asked for.
+        robot: whose formulas they are.
+
+    Raises:
+        ExpressionError: the file has no such entry.
+    """
+    wanted = claimed_of(entry, robot)
+    shown = f"{entry}: " if entry not in file.formulas else ""
+    of = next((one for one in file.formulas if claimed_of(one, robot) == wanted), None)
+    if of is None or len(file.formulas) == 1:
+        raise ExpressionError(f"{file.path}: {shown}" + _("it is no entry of what is given"))
+    said = _("of the whole that is given {entry} alone is judged").format(entry=entry)
+    remark = "; ".join(filter(None, (said, file.remarks.get(of))))
+    alone = _alone(file, of, entry)
+    others = tuple(_alone(one, of, entry) for one in file.others if of in one.formulas)
+    return replace(alone, others=others, remarks={entry: remark})
+
+
+def _alone(file: FormulaFile, of: str, entry: str) -> FormulaFile:
+    def one(table: Mapping[str, Any]) -> dict[str, Any]:
+        return {entry: table[of]} if of in table else {}
+
+    return replace(
+        file,
+        formulas=one(file.formulas),
+        texts=one(file.texts),
+        as_typed=one(file.as_typed),
+        unread=one(file.unread),
+        parts={},
         matrices={},
     )

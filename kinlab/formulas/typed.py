@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Container, Iterable
+from collections.abc import Container, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache, partial
@@ -526,14 +526,10 @@ _EDGES = re.compile(rf"^(?:[&]|{_SPACES})+|(?:[&]|{_SPACES})+$")
 _UNENDED = re.compile(r"[-+*/=](?:[&\s]|\\[,;:! ]|\\q?quad){0,9}$")
 _OWN_NAME = re.compile(r"[\\\w{} ]+")
 _NAME = re.compile(r"[A-Za-z]\w*(?:\[[\d,]+\])?")
-EXPLAINED_TWICE = N_(
-    "{name} is explained twice; keep one, in front of the formula or in [symbols]"
-)
+EXPLAINED_TWICE = N_("{name} is explained twice; keep one, in front of the formula or in [symbols]")
 
 
-def explained(
-    text: str, entry: str = "", place: str = "expression"
-) -> tuple[dict[str, str], str]:
+def explained(text: str, entry: str = "", place: str = "expression") -> tuple[dict[str, str], str]:
     """A formula with what its writer explains: ``h = m2*l1*l2*s2; C11 = -h*qd2``.
 
     Args:
@@ -555,6 +551,8 @@ def explained(
     left = lines[-1].partition("=")[0] if "=" in lines[-1] else ""
     if not all(_is_own_name(name.strip("& ")) for name, *_rest in own):
         return {}, text
+    if left and lines[-1] not in gives and _may_be_another(lines):
+        return {}, text
     if entry and left:
         named = entry_name(left, writing=hand([text]))
         if not of_one_name(named, entry_name(entry)):
@@ -564,7 +562,29 @@ def explained(
             raise refused(place, EXPLAINED_TWICE, name=name)
     dollars = "$" if is_latex(text) else ""
     formulas = {own_name(name): f"{dollars}{bare(right)}{dollars}" for name, _sign, right in own}
+    for line in (line for line in lines[:-1] if line not in gives):
+        for name in _also_given(line):
+            formulas.setdefault(own_name(name), f"{dollars}{bare(_ends(line)[2])}{dollars}")
     return formulas, f"{dollars}{lines[-1]}{dollars}"
+
+
+def _may_be_another(lines: Sequence[str]) -> bool:
+    """Whether an equation before the last may as well be meant: of a last one with a letter that no
+    book has, and one before it whose letter no other uses.
+    """
+    *others, last = (name.strip("& ") for name, *_rest in map(_ends, lines))
+    if not _is_letter(last) or any(last.lower() in group for group in _MEANT):
+        return False
+    every = zip(others, lines, strict=False)
+    return any(_is_letter(name) and not explains_another(x, list(lines)) for name, x in every)
+
+
+def _is_letter(name: str) -> bool:
+    """Whether a name has no number, and is no coordinate of the tool."""
+    with suppress(ExpressionError):
+        letter = is_name(name) and not _head_and_places(entry_name(name))[1]
+        return letter and name not in _COORDINATES
+    return False
 
 
 @lru_cache(maxsize=16)
@@ -578,6 +598,7 @@ def _in_order(text: str, entry: str) -> tuple[tuple[str, ...], frozenset[str]]:
         or _is_its_place(line, entry, writing)
         or (_is_meant(line, entry, writing) and not explains_another(line, lines))
     }
+    gives = gives or {line for line in lines if _is_its_letter(line, entry, writing)}
     lines.sort(key=lambda line: (line in gives, "=" not in line))
     if lines and lines[-1] not in gives and "=" in lines[-1]:
         lines = sorted(lines, key=lambda line: not explains_another(line, lines))
@@ -592,6 +613,21 @@ def _is_its_place(line: str, entry: str, writing: Hand) -> bool:
         alike = _are_in_one_group(head, mine)
         return "=" in line and len(places) > 1 and here == places and alike
     return False
+
+
+def _is_its_letter(line: str, entry: str, writing: Hand) -> bool:
+    """Whether a line gives an energy by another book's letter: ``K = ...`` of T."""
+    with suppress(ExpressionError):
+        return "=" in line and _are_one_energy(
+            entry_name(line.partition("=")[0], writing=writing), entry
+        )
+    return False
+
+
+def _are_one_energy(name: str, entry: str) -> bool:
+    """Whether books have both names for one energy: capitals, for t and u are torques."""
+    both = {name, entry}
+    return both <= _ONE_NUMBER and any(both <= {*group.split()} for group in _IN_BOOKS)
 
 
 def lines_before(text: str, entry: str, given: Container[str]) -> list[str]:
@@ -649,9 +685,18 @@ def _explaining(lines: Iterable[str]) -> dict[str, tuple[str, list[str]]]:
     found: dict[str, tuple[str, list[str]]] = {}
     for line in lines:
         left, *sides = line.split("=")
-        with suppress(ExpressionError):  # a derivative is no name
-            found.setdefault(own_name(left), (left.strip("& "), []))[1].extend(sides)
+        given = _also_given(line)
+        for name in (left, *given):
+            with suppress(ExpressionError):  # a derivative is no name
+                told = found.setdefault(own_name(name), (name.strip("& "), []))[1]
+                told += [side for side in sides if side not in given]
     return found
+
+
+def _also_given(line: str) -> list[str]:
+    """The names of the same letter that a line gives too: M21 of ``M12 = M21 = ...``."""
+    left, *sides = line.split("=")
+    return [side for side in sides[:-1] if is_name(side) and is_sister(side, left)]
 
 
 def _held_against_the_last(steps: list[str]) -> tuple[bool, bool]:
@@ -1053,9 +1098,10 @@ _JOINTS = re.compile(
 def is_name_of(name: str, entry: str) -> bool:
     """Whether a name in a formula is the entry's own: tau of an arm's only joint, too."""
     with suppress(ExpressionError):
-        (head, places), (mine, wanted) = map(
-            _head_and_places, (entry_name(name), entry_name(entry))
-        )
+        both = entry_name(name), entry_name(entry)
+        if {*both} <= _ONE_NUMBER:
+            return _are_one_energy(*both)
+        (head, places), (mine, wanted) = map(_head_and_places, both)
         known = [group for group in _MEANT if head in group]
         same = head == mine or any(mine in group for group in known)
         return same and (places == wanted or (head == "tau" and not places and wanted == "1"))
@@ -1224,6 +1270,7 @@ def entry_name(text: str, place: str = "expression", writing: Hand | None = None
     """
     if len(text) > _LONGEST_NAME:
         raise refused(place, N_("{text}... is no name of an entry"), text=text[:30])
+    text = with_energies(text)
     whole = _OF_STATE.sub("", _TIMES_RATES.sub("", bare(text).strip("& "))).strip()
     typed = _IN_BASE.sub("", whole)
     if _LAMBDA.fullmatch(typed):
@@ -1250,6 +1297,21 @@ def entry_name(text: str, place: str = "expression", writing: Hand | None = None
         return typed
     head, index = found.groups()
     return f"{_PRINTED.get(head, head)}{index.replace('_', '')}"
+
+
+_ENERGY = re.compile(
+    r"(?<![A-Za-z\\])E_\s?\{?\s?(?:\\(?:mathrm|text|rm)\s?\{?\s?)?([pk])(?:ot|in)?(?![A-Za-z])\s?\}{0,2}"
+)
+"""An energy whose letter has a word below it: ``E_{kin}``."""
+
+
+def with_energies(text: str) -> str:
+    """``Ek`` and ``Ep`` for ``E_k``, ``E_{pot}``.
+
+    Args:
+        text: as typed.
+    """
+    return _ENERGY.sub(lambda found: f"E{found[1]}", text)
 
 
 _RANGE = re.compile(
@@ -1343,6 +1405,8 @@ def of_one_name(left: str, name: str) -> bool:
     """
     if _UNFINISHED.search(left):
         return False
+    if {left, name} <= _ONE_NUMBER:
+        return _are_one_energy(left, name)
     (head, places), (mine, wanted) = _head_and_places(left), _head_and_places(name)
     asked = _asked(name if name not in _COORDINATES else f"fk[{'xyz'.index(name)},3]")
     known = [group for group in _MEANT if head in group]

@@ -87,7 +87,7 @@ def _arguments(case: Case) -> Iterator[Confusion]:
         said = _("leaves the acceleration terms out")
         yield _argument("acceleration left out", said, a, np.zeros_like, 1.1)
         said = _("leaves the terms in the velocities and in the accelerations out")
-        yield _argument("acceleration left out", said, ("v", "a"), np.zeros_like, 0.9)
+        yield _argument("acceleration left out", said, ("v", "a"), np.zeros_like, 0.7)
         said = _("has the acceleration with the opposite sign")
         yield _argument("acceleration sign", said, a, np.negative, 1.3)
     if "wrench" in have:

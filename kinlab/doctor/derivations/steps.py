@@ -232,7 +232,10 @@ def _terms(
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Sub) and len(parts) == 2:
             does = _("has {new} for {old}").format(new=spelt(node.right), old=spelt(node))
             yield step("missing term", does, 1.08, (node, node.right))
+        rotors = any("Ia" in spelt(part) for part in parts)
         for part in parts:
+            if rotors and isinstance(part, ast.Name):  # what the rotors' inertia is added to
+                continue
             term = told(part)
             if len(parts) > 1 or isinstance(part, ast.UnaryOp):
                 called = KNOWN.get(spelt(part), "").partition(" of ")[0].removeprefix("the ")

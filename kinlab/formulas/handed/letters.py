@@ -6,6 +6,7 @@ import re
 import unicodedata
 
 from kinlab.formulas.signs.refusals import refused
+from kinlab.formulas.typed import with_energies
 from kinlab.host.language import N_, _
 
 _MATHEMATICAL = re.compile("[\U0001d400-\U0001d7ff\u210e\u2112]")
@@ -48,6 +49,7 @@ def plain_letters(text: str, place: str) -> str:
     """
     if "<" in text:
         text = _BREAK.sub("\n", _BELOW.sub(_below, _ABOVE.sub(_above, text)))
+    text = with_energies(text)
     text = _IN_PARENTHESES.sub(lambda found: f"_{{{found[1].replace(' ', '')}}}", text)
     if text.isascii():
         return text
