@@ -6,12 +6,50 @@ import pytest
 from hand_programs import PROGRAMS, asked, lines_named, searched
 
 from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.program.lanes.functions import with_lanes
 from kinlab.doctor.program.lanes.numbers import Laned, Lanes
 from kinlab.doctor.program.lanes.run import InLanes
 from kinlab.doctor.program.lanes.ways import Ways
 from kinlab.doctor.program.places import changed
 from kinlab.doctor.program.trial import NoProgramError, quietly
 
+FIVE_BAR = """
+import numpy as np
+
+l1, l2, E = np.array([.30, .26]), np.array([.50, .54]), np.array([.12, -.12])
+mc, rc, Ic = [1.0, .8], [.12, .15], [.0075, .0060]
+mr, rr, Ir = [.40, .35], [.22, .30], [.0083, .0090]
+mp, g = 1.5, np.array([0, 9.81])
+Im = np.array([1.0e-5*10**2, 1.2e-5*12**2])
+perp = lambda p: np.array([-p[1], p[0]])
+
+def f(xy, v, a, mode):
+    U, W = [], []
+    for i in (0, 1):
+        d = xy - np.array([E[i], 0])
+        n = np.linalg.norm(d)
+        t = np.arctan2(d[1], d[0]) - mode[i]*np.arccos((l1[i]**2 + n*n - l2[i]**2)/(2*l1[i]*n))
+        U.append(np.array([np.cos(t), np.sin(t)]))
+        W.append((d - l1[i]*U[i])/l2[i])
+    k = [perp(U[i]) @ W[i] for i in (0, 1)]
+    J = np.array([W[i]/(l1[i]*k[i]) for i in (0, 1)])
+    Ji = np.linalg.inv(J)
+    B = np.array([-U[i]/(l2[i]*k[i]) for i in (0, 1)])
+    td, bd = J @ v, B @ v
+    tau = Ji.T @ (mp*(a + g))
+    for i in (0, 1):
+        u, w = U[i], W[i]
+        rest = a + l1[i]*td[i]**2*u + l2[i]*bd[i]**2*w
+        tdd = rest @ w/(l1[i]*k[i])
+        bdd = -(rest @ u)/(l2[i]*k[i])
+        ar = l1[i]*(tdd*perp(u) - td[i]**2*u) + rr[i]*(bdd*perp(w) - bd[i]**2*w)
+        dB = B[i] @ Ji
+        dT = np.eye(2)[i]
+        dc = np.outer(l1[i]*perp(u), dT) + np.outer(rr[i]*perp(w), dB)
+        tau += dc.T @ (mr[i]*(ar + g)) + dB*Ir[i]*bdd
+        tau += dT*((Ic[i] + mc[i]*rc[i]**2 + Im[i])*tdd + mc[i]*rc[i]*g @ perp(u))
+    return tau
+"""
 OTHERS = {
     "complex numbers": (
         "planar3r",
@@ -83,6 +121,40 @@ def f(q, v, tau):
     return np.linalg.inv(M) @ (tau - n)
 """,
     ),
+    "arrays that are filled and added to": (
+        "unequal",
+        "fivebar_torque",
+        FIVE_BAR,
+    ),
+    "singular values": (
+        "planar2r",
+        "isotropy_defect",
+        """
+import numpy as np
+
+def f(q):
+    s1, c1, s12, c12 = np.sin(q[0]), np.cos(q[0]), np.sin(q[0] + q[1]), np.cos(q[0] + q[1])
+    J = np.array([[-0.5*s1 - 0.4*s12, -0.4*s12], [0.5*c1 + 0.4*c12, 0.4*c12]])
+    squares = np.linalg.svd(J, compute_uv=False)**2
+    return float(np.sum((squares/squares.mean() - 1)**2))
+""",
+    ),
+    "complex numbers, of the standard library": (
+        "planar2r",
+        "gravity_torques",
+        """
+from cmath import exp
+import numpy as np
+
+def f(q):
+    a1, a2 = 0.5*exp(1j*q[0]), 0.4*exp(1j*(q[0] + q[1]))
+    tau = np.array([2.0, 1.5])*9.81
+    tau[0] = (tau[0] + tau[1])*a1.real
+    tau[1] *= a2.real
+    tau[0] += tau[1]
+    return tau
+""",
+    ),
 }
 
 
@@ -118,6 +190,11 @@ def _is_tangent(new) -> bool:
     return isinstance(new, str) and new == "tan"
 
 
+def _sets_one_block(fields, tried, i, j) -> bool:
+    whole = isinstance(tried[i][0].changes[0].new, list)
+    return whole and bool(fields[i] & fields[j])
+
+
 @pytest.mark.many
 @pytest.mark.parametrize("name", TEXTS)
 def test_a_lane_answers_as_the_edited_program(name) -> None:
@@ -135,7 +212,10 @@ def test_a_lane_answers_as_the_edited_program(name) -> None:
         apart = lanes.woven.inside()
         # tan(pi/2) is 1e16, and two of these differ by roundings
         followed = [k for k in followed if not _is_tangent(tried[k][0].changes[0].new)]
+        fields = [{(id(x.holder), str(x.field)) for x in one.changes} for one, _values in tried]
+        # two lines more in one block: alone the second takes the place of the first
         pairs = [(i, j) for i in followed for j in followed if i < j and not apart[i, j]]
+        pairs = [(i, j) for i, j in pairs if not _sets_one_block(fields, tried, i, j)]
         pairs = [pairs[k] for k in dice.permutation(len(pairs))[:200]]
         both = lanes.answers(np.array(pairs))
         assert both is not None
@@ -287,3 +367,25 @@ def test_a_loop_that_no_lane_runs_through() -> None:
 
     assert [*Ways(lanes).turns((0,), lambda: range(3), no_range, lambda: 2)] == []
     assert lanes.lost.all()
+
+
+def test_a_singular_matrix_loses_its_lane_alone() -> None:
+    lanes = Lanes(np.array([[0], [1], [2]]), 10**9)
+    stack = np.random.default_rng(0).normal(size=(3, 2, 2))
+    stack[1] = 0.0
+    matrix = np.empty((2, 2), dtype=object)
+    for i, j in np.ndindex(2, 2):
+        matrix[i, j] = Laned(stack[:, i, j].copy(), lanes, lanes.all)
+    found = with_lanes({"inv": np.linalg.inv})["inv"](matrix)
+    np.testing.assert_array_equal(lanes.lost, [False, True, False])
+    for k in (0, 2):
+        mine = [[found[i, j].within(lanes.all)[k] for j in (0, 1)] for i in (0, 1)]
+        np.testing.assert_allclose(mine, np.linalg.inv(stack[k]), rtol=1e-12)
+
+
+def test_a_line_that_sets_what_is_not_there_loses_its_lane_alone() -> None:
+    lanes = Lanes(np.array([[0], [-1]]), 10**9)
+    row = [1.0, 2.0]
+    assert lanes.there((0,), lambda: row[2]) == ()
+    np.testing.assert_array_equal(lanes.lost, [True, False])
+    assert lanes.there((0,), lambda: row[1]) == (0,)

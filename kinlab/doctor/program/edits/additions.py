@@ -165,7 +165,8 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     multiplied = isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.Mult)
     summed = isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.MatMult)
     summed = summed and here.field == "right" and not scope.is_pose(node)
-    if (multiplied or summed) and len(shape) == 1 and isinstance(node, ast.Name):
+    alone = isinstance(parent, ast.Assign)  # the squares of singular values
+    if (multiplied or summed or alone) and len(shape) == 1 and isinstance(node, ast.Name):
         yield here.instead(ast.BinOp(node, ast.Pow(), number(2)), "power", 1.12)
     if row and not isinstance(parent, ast.Subscript | ast.BinOp | ast.Attribute):
         total = ast.Attribute(ast.Name("np", ast.Load()), "cumsum", ast.Load())

@@ -29,6 +29,8 @@ _NEVER = 1.02
 """Cost of a line that fills what is never filled."""
 _LONG, _NAMES = 100, 8
 """Characters of a line of which another is made."""
+_ON_THE_REST = 1.04
+"""Cost of what is done to some rows of a matrix in place, and not to the others."""
 _LEFT_OUT, _VECTORS = 1.1, ((2,), (3,))
 """Cost of a step of a recursion that is left out; shapes of what it carries along."""
 _SHORT, _FEW = 30, 3
@@ -266,6 +268,8 @@ def _beside(
         if isinstance(target, ast.Subscript):
             if (mirror := _mirrored(target)) is not None:
                 yield line_more(part, node, name, block, at + 1, mirror, 1.08)
+            for rest in _on_the_rest(line, scope):
+                yield line_more(part, node, name, block, at + 1, rest, _ON_THE_REST)
             others += [*_of_other_entries(line, scope)]
             others += [_Stepped(step, scope.shapes).visit(copied(line)) for step in (1, -1)]
         for other in others:
@@ -438,6 +442,29 @@ def _of_other_entries(line: ast.stmt, scope: Scope) -> Iterator[ast.stmt]:
                 other = copied(line)
                 _put(other, k, rest)
                 other.value = piece
+                yield other
+
+
+def _on_the_rest(line: ast.stmt, scope: Scope) -> Iterator[ast.stmt]:
+    """What is done to some rows in place, to the others: ``J[3:] = R @ J[3:]``."""
+    target = _targets(line)[0]
+    assert isinstance(target, ast.Subscript)
+    keys = target.slice.elts if isinstance(target.slice, ast.Tuple) else [target.slice]
+    sizes = scope.observed.shape(target.value) or ()
+    own = ast.unparse(target)
+    for k, key in enumerate(keys[: len(sizes)]):
+        rest = _complement(key, sizes[k]) if isinstance(key, ast.Slice) else None
+        if isinstance(rest, ast.Slice):
+            other = copied(line)
+            same = [x for x in nodes(other) if isinstance(x, ast.Subscript)]
+            same = [x for x in same if ast.unparse(x) == own]
+            for one in same:
+                held = one.slice.elts if isinstance(one.slice, ast.Tuple) else None
+                if held is None:
+                    one.slice = copied(rest)
+                else:
+                    held[k] = copied(rest)
+            if len(same) > 1:  # it is set, and used
                 yield other
 
 

@@ -6,6 +6,7 @@ import cmath
 import functools
 import math
 from collections.abc import Callable
+from contextlib import suppress
 from types import ModuleType
 from typing import Any
 
@@ -43,8 +44,10 @@ def with_lanes(space: dict[str, Any]) -> dict[str, Any]:
     known: dict[int, Any] = {id(QUICK): library, id(np): library}
     known[id(np.linalg)] = library.linalg
     known[id(math)] = known[id(REAL)] = _module(REAL, _OF_MATH)
-    known[id(cmath)] = _module(cmath, _OF_MATH)
-    made = ((np, _NUMPY), (QUICK, _NUMPY), (np.linalg, _LINEAR), (math, _OF_MATH), (REAL, _OF_MATH))
+    known[id(cmath)] = _module(cmath, _OF_COMPLEX)
+    made: list[tuple[ModuleType, dict[str, Any]]]
+    made = [(np, _NUMPY), (QUICK, _NUMPY), (np.linalg, _LINEAR)]
+    made += [(math, _OF_MATH), (REAL, _OF_MATH), (cmath, _OF_COMPLEX)]
     for module, own in made:
         known |= {id(getattr(module, name)): new for name, new in own.items()
                   if hasattr(module, name)}  # fmt: skip
@@ -56,6 +59,12 @@ def part_of(value: Any, name: str) -> Any:
     """What ``value.imag`` is, of an array of numbers with lanes, too."""
     laned = isinstance(value, np.ndarray) and value.dtype == object
     return _NUMPY[name](value) if laned else getattr(value, name)
+
+
+def room_for(array: Any, value: Any) -> Any:
+    """An array of numbers, as one that takes numbers with lanes where such are put into it."""
+    plain = isinstance(array, np.ndarray) and array.dtype.kind in "fc"
+    return array.astype(object) if plain and _laned(value) else array
 
 
 class _Number(type):
@@ -208,17 +217,49 @@ def _linear(plain: Callable[..., Any]) -> Any:
         vectors = len(stacks) == 2 and stacks[1].ndim == 2
         if vectors:
             stacks[1] = stacks[1][..., None]
-        found = plain(*stacks, **named)
+        try:
+            found = plain(*stacks, **named)
+        except np.linalg.LinAlgError:
+            found = _one_by_one(lanes, plain, stacks, named)
+        if isinstance(found, tuple):
+            return tuple(_apart(lanes, one) for one in found)
         return _apart(lanes, found[..., 0] if vectors else found)
 
     return asked
 
 
+def _one_by_one(
+    lanes: Lanes, plain: Callable[..., Any], stacks: list[Any], named: dict[str, Any]
+) -> Any:
+    """The same where the matrix of some lane is singular: this lane is lost.
+
+    Raises:
+        LinAlgError: it is so in every lane.
+    """
+    found: dict[int, Any] = {}
+    for k, given in enumerate(zip(*stacks, strict=True)):
+        with suppress(np.linalg.LinAlgError):
+            found[k] = plain(*given, **named)
+    if not found:
+        raise np.linalg.LinAlgError
+    lanes.work += 10 * len(stacks[0])
+    lost = np.ones(len(stacks[0]), dtype=bool)
+    lost[[*found]] = False
+    lanes.lose(lanes.here, lost)
+    some = next(iter(found.values()))
+    if isinstance(some, tuple):
+        every = [found.get(k, some) for k in range(len(lost))]
+        return tuple(np.stack(one) for one in zip(*every, strict=True))
+    return np.stack([found.get(k, some) for k in range(len(lost))])
+
+
 def _norm(value: Any, *rest: Any, **named: Any) -> Any:
-    if not _laned(value) or rest or named:
+    axis = named.get("axis")
+    if not _laned(value) or rest or {*named} - {"axis"} or isinstance(axis, tuple):
         return np.linalg.norm(value, *rest, **named)
-    entries = np.array(value, dtype=object).ravel()
-    return _NUMPY["sqrt"](sum(abs(x) ** 2 for x in entries))
+    array = np.array(value, dtype=object)
+    squares = np.frompyfunc(lambda x: abs(x) ** 2, 1, 1)(array)
+    return _NUMPY["sqrt"](sum(squares.ravel()) if axis is None else squares.sum(axis=axis))
 
 
 def _power(matrix: Any, count: int) -> Any:
@@ -242,17 +283,23 @@ _NUMPY: dict[str, Any] = {
     **{name: _array(getattr(np, name)) for name in _ARRAYS},
     "float64": _with_float(np.float64),
 }
+_OF_COMPLEX: dict[str, Any] = {
+    name: _of_one(getattr(np, _MATH.get(name, name)), getattr(cmath, name))
+    for name in (*_OF_ONE, *_MATH)
+    if hasattr(cmath, name)
+}
 _OF_MATH: dict[str, Any] = {
+    **_OF_COMPLEX,
     **{
-        name: _of_one(getattr(np, _MATH.get(name, name)), getattr(REAL, name, None) or
-                      getattr(cmath, name))
+        name: _of_one(getattr(np, _MATH.get(name, name)), getattr(REAL, name))
         for name in (*_OF_ONE, *_MATH)
-        if hasattr(REAL, name) or hasattr(cmath, name)
+        if hasattr(REAL, name)
     },
     **{name: _of_two(getattr(np, own), getattr(math, name)) for name, own in _MATH_OF_TWO.items()},
-}  # fmt: skip
+}
+_OF_MATRICES = ("inv", "solve", "pinv", "det", "svd", "eig", "eigh", "eigvals", "eigvalsh", "qr")
 _LINEAR: dict[str, Any] = {
-    **{name: _linear(getattr(np.linalg, name)) for name in ("inv", "solve", "pinv", "det")},
+    **{name: _linear(getattr(np.linalg, name)) for name in _OF_MATRICES},
     "norm": _norm,
     "matrix_power": _power,
     "multi_dot": _dot_of_all,

@@ -174,6 +174,18 @@ class Lanes:
                 self.here = here
         return self.joined(value, found) if found else value
 
+    def there(self, edits: Sequence[int], old: Callable[[], Any]) -> tuple[int, ...]:
+        """A number where there is an entry that lines of edits set; else their lanes are lost."""
+        try:
+            old()
+        except NameError:
+            pass  # told where it is set
+        except Exception:  # noqa: BLE001  what edited programs may raise
+            for edit in self.here.edits.keys() & {*edits}:
+                self.lose(self.here.inner(edit))
+            return ()
+        return (0,)
+
     def lose(self, place: LaneGroup, some: Any = slice(None)) -> None:
         """Lanes whose answers are not to be believed."""
         self.lost[some if place.which is None else place.which[some]] = True

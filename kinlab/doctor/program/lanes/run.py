@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.program.lanes.functions import part_of, with_lanes
+from kinlab.doctor.program.lanes.functions import part_of, room_for, with_lanes
 from kinlab.doctor.program.lanes.numbers import Laned, Lanes, TooMuchError
 from kinlab.doctor.program.lanes.ways import Ways
 from kinlab.doctor.program.lanes.woven import Edits, Woven
@@ -187,9 +187,9 @@ class InLanes:
                     change.put(change.new)
                 trial.space.update(with_lanes(trial.space))
                 ways = Ways(lanes)
-                trial.space |= {"_pick": lanes.pick, "_kept": ways.kept}
+                trial.space |= {"_pick": lanes.pick, "_there": lanes.there, "_kept": ways.kept}
                 trial.space |= {"_turns": ways.turns, "_sides": ways.sides}
-                trial.space |= {"_met": meet, "_part": part_of}
+                trial.space |= {"_met": meet, "_part": part_of, "_room": room_for}
                 for k in every:
                     trial.place(k, self._functions[k])
                 trial.stale()

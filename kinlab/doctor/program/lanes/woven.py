@@ -17,6 +17,7 @@ import numpy as np
 
 from kinlab.doctor.bytecode.syntax import called, located, names, nodes, pieces, shallow
 from kinlab.doctor.program.lanes.functions import PARTS
+from kinlab.doctor.program.lanes.room import with_room
 from kinlab.doctor.program.lanes.ways import WRITES, apart, function_of, loaded, may_run_apart
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import (
@@ -341,7 +342,7 @@ class Woven:
         """A function's definition, or the lines of a module, with the edits in it."""
         found = shallow(old)
         found.body = self._body(old.body)
-        return located(_with_parts(found))
+        return located(with_room(_with_parts(found)))
 
     def _body(self, body: list[ast.stmt], alone: bool = False) -> list[ast.stmt]:
         """A block; whether it may run for some lanes alone."""
@@ -385,7 +386,11 @@ class Woven:
             line = ast.Assign([target], ast.Call(ast.Name("_pick", ast.Load()), given, []))
             if alone:
                 line.value = apart(line, line.value)
-            found.append(line)
+            if isinstance(target, ast.Subscript):
+                there = ast.Call(ast.Name("_there", ast.Load()), given[:2], [])
+                found.append(ast.For(ast.Name(_EDIT, ast.Store()), there, [line], []))
+            else:
+                found.append(line)
         return found
 
     def _block(self, statement: ast.stmt, alone: bool) -> list[ast.stmt]:

@@ -24,6 +24,8 @@ def _cross(one: Any, other: Any, *rest: Any, **options: Any) -> Any:
         if a.shape == b.shape == (3,):
             (a0, a1, a2), (b0, b1, b2) = a.tolist(), b.tolist()
             return np.array([a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0])
+        if a.shape == b.shape == (2,) and _OBJECT in (a.dtype, b.dtype):  # numpy works in place
+            return a[0] * b[1] - a[1] * b[0]
     return np.cross(one, other, *rest, **options)
 
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 
-from kinlab.doctor.bytecode.syntax import factors
+from kinlab.doctor.bytecode.syntax import factors, text_of
 from kinlab.doctor.program.edits.scope.forms import Turned, block_of, statement_of
 from kinlab.doctor.program.edits.scope.functions import PI
 from kinlab.doctor.program.edits.scope.part import Scope
@@ -42,6 +43,8 @@ _IDLE_NUMBER = 1.06
 """The same of a number that moves: ``w`` of ``w += rate``."""
 _COPIED = 1.15
 """Cost of another vector for one that is kept under another name: ``last = p``."""
+_IN_BLOCK = 1.13
+"""Cost of a row for another whose entry is taken in the same way in the lines around."""
 _IN_LINE = 1.12
 """Cost of a name for another that stands in the same line."""
 
@@ -62,6 +65,7 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
         yield here.instead(ast.BinOp(PI, ast.Sub(), node), "argument", 1.12)
     across = Turned(scope.shapes).visit_Name(node).id
     copied = bool(shape) and isinstance(here.parent, ast.Assign) and here.field == "value"
+    taken, around = _taken_around(here)
     for other, known in scope.shapes.items():
         if other != node.id and known == shape and other not in scope.counters:
             near = _alike(other, node.id)
@@ -70,6 +74,8 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
             cost = 1.1 if near else 1.14 if beside else _COPIED if copied else 1.25
             digits = node.id[len(_letters(node.id)) :]
             cost = _NUMBERED if kind == "index" and len(digits) == 1 else cost
+            if cost > _IN_BLOCK and f"{other}{taken}" in around:
+                cost = _IN_BLOCK
             if cost > _IN_LINE and other in scope.names_in(statement_of(here.above)):
                 cost = _IN_LINE  # of what stands in one line one is taken for another
             if scope.are_halves(other, node.id):
@@ -101,6 +107,15 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
             if other != node.id and entries == shape[1:] and scope.shapes.get(other) != shape:
                 cost = 1.15 if _alike(other, node.id) else 1.2
                 yield here.instead(ast.Name(other, ast.Load()), "name", cost)
+
+
+def _taken_around(here: Here) -> tuple[str, set[str]]:
+    """How an entry of a row is taken, ``[i]``, and all that stands so in the lines around."""
+    if not isinstance(here.parent, ast.Subscript) or here.field != "value":
+        return "", set()
+    taken = f"[{ast.unparse(here.parent.slice)}]"
+    lines = " ".join(map(text_of, block_of(here.above)[0]))
+    return taken, {*re.findall(rf"[A-Za-z_]\w*{re.escape(taken)}", lines)}
 
 
 def _counters_around(here: Here, scope: Scope) -> list[str]:
