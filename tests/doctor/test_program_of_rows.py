@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from hand_programs import told_in_its_line
+from hand_programs import asked, told_in_its_line
 from test_program_lanes import FIVE_BAR
-
-import kinlab as kl
 
 TOOL_AXES = """
 import numpy as np
@@ -59,7 +57,6 @@ def test_a_slip_is_told_in_its_line(robot, quantity, text, right, slip, tmp_path
 
 def test_what_is_done_to_some_rows_is_done_to_the_others():
     """It was told in the line that fills them, which has nothing wrong."""
-    space: dict = {}
-    exec(TOOL_AXES.replace("    J[3:] = Re.T @ J[3:]\n", ""), space)
-    found = kl.diagnose("ur10", "jacobian_tool", space["f"])
+    text = TOOL_AXES.replace("    J[3:] = Re.T @ J[3:]\n", "")
+    found, _good = asked(text, "ur10", "jacobian_tool")
     assert "a line is missing: `J[3:] = Re.T @ J[3:]`" in found.sentence, found
