@@ -389,3 +389,21 @@ def test_a_line_that_sets_what_is_not_there_loses_its_lane_alone() -> None:
     assert lanes.there((0,), lambda: row[2]) == ()
     np.testing.assert_array_equal(lanes.lost, [True, False])
     assert lanes.there((0,), lambda: row[1]) == (0,)
+
+
+def test_the_least_and_what_is_chosen_in_each_lane() -> None:
+    """The lanes that were not of the majority were lost: of a cosine that is held below one."""
+    lanes = Lanes(np.array([[0], [1], [2]]), 10**9)
+    x = Laned(np.array([-3.0, 0.5, 2.0]), lanes, lanes.all)
+    known = with_lanes({name: getattr(np, name) for name in ("clip", "where", "minimum")})
+    clipped = [
+        known["max"](-1.0, known["min"](1.0, x)),
+        known["clip"](x, -1.0, 1.0),
+        known["where"](x > 1.0, 1.0, known["where"](x < -1.0, -1.0, x)),
+        known["max"]([known["minimum"](x, 1.0), -1.0]),
+    ]
+    for one in clipped:
+        entry = one.item() if isinstance(one, np.ndarray) else one
+        np.testing.assert_array_equal(entry.within(lanes.all), [-1.0, 0.5, 1.0])
+    assert not lanes.lost.any()
+    assert known["max"]([1, 3, 2]) == 3 and known["min"]("ab", key=ord) == "a"

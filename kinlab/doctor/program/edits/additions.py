@@ -129,6 +129,8 @@ _THRICE = 3
 """How often a name may stand in a sum of three equal links."""
 
 
+_QUADRATIC = 1.0
+"""Cost of the half of a quadratic form for all of it."""
 _HALF_SQUARED = 1.09
 """Cost of half a length in a square, where it stands whole."""
 
@@ -249,7 +251,9 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
             cost = _AS_ITS_LIKE if summand and _has_its_like(here, times, scope) else cost
             cost = _OF_A_CENTRE if value < 1 and _is_called_a_centre(here) else cost
             cost += _PUT_DOWN * (isinstance(parent, ast.List) and isinstance(node, ast.Name))
-            yield here.instead(times, "factor", cost + _OF_A_LIST * used)
+            cost += _OF_A_LIST * used
+            cost = _QUADRATIC if value < 1 and _is_quadratic(node) else cost
+            yield here.instead(times, "factor", cost)
         if summand and isinstance(node, ast.Name | ast.Subscript) and scope.divisors & _MILLIMETRES:
             yield here.instead(chains.times(number(1000), node), "factor", _IN_MILLIMETRES)
     if (summand or whole) and not isinstance(node, ast.Constant):
@@ -287,6 +291,14 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     weighed = rotated and isinstance(op, ast.Mult) and len(shape) == 1  # m*(R @ c)
     if listed or summand or argument or product or weighed:
         yield from _terms(here, scope, shape, whole or here.field == "elt")
+
+
+def _is_quadratic(node: ast.expr) -> bool:
+    """Whether it is a quadratic form: ``v @ M @ v``, of which energies have the half."""
+    left = node.left if isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult) else None
+    if not isinstance(node, ast.BinOp) or not isinstance(left, ast.BinOp):
+        return False
+    return isinstance(left.op, ast.MatMult) and text_of(left.left) == text_of(node.right)
 
 
 def _has_half_a_turn(node: ast.expr) -> bool:

@@ -28,6 +28,8 @@ _TENSORS = ("tensor", "Tensor", "TENSOR", "theta", "Theta", "THETA")
 _ROTATIONS = ("R", "r")
 """How names of rotation matrices begin."""
 _VECTOR, _TENSOR = (3,), (3, 3)
+_OF_ONE_LINK = 1.0
+"""Cost of the moment about another axis, where mass, distance and moment are of one link."""
 _ALL_AXES = 1.06
 """Cost of a body's energy about all axes for that about one."""
 _BESIDE = 1.06
@@ -126,7 +128,9 @@ def _parallel_axes(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
             square = ast.BinOp(length, ast.Pow(), number(2))
             new = ast.BinOp(here.node, ast.Add(), ast.BinOp(mass, ast.Mult(), square))
             near = _digits(mass) in ("", _digits(here.node)) and _digits(length) == _digits(mass)
-            yield here.instead(new, "missing term", 1.1 if near else 1.2)
+            own = {_name(one)[1:] for one in (here.node, mass, length)}
+            cost = _OF_ONE_LINK if len(own) == 1 and "" not in own else 1.1 if near else 1.2
+            yield here.instead(new, "missing term", cost)
 
 
 def _parallel_axes_of_tensors(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

@@ -156,11 +156,11 @@ def _is_transported(term: ast.expr, here: Here) -> bool:
         return False
     turning, rate = map(text_of, term.args)
     axes = [text_of(one.right) for one in summands(here.node) if _is_scaled(one)]
+    if text_of(term.args[-1].right) not in axes:
+        return False
     lines = [one for one in nodes(here.above[0]) if isinstance(one, ast.Assign | ast.AugAssign)]
     sums = (one.value for one in lines if turning in map(text_of, targets_of(one)))
-    return text_of(term.args[-1].right) in axes and any(
-        rate in map(text_of, summands(one)) for one in sums
-    )
+    return any(rate in map(text_of, summands(one)) for one in sums)
 
 
 def _is_scaled(node: ast.expr) -> TypeGuard[ast.BinOp]:

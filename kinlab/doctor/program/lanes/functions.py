@@ -21,9 +21,18 @@ _OF_ONE = (
     *("square", "sign", "conj", "conjugate", "real", "imag", "angle", "abs", "absolute", "fabs"),
     *("deg2rad", "radians", "rad2deg", "degrees"),
 )
-_OF_TWO = ("arctan2", "hypot", "power", "float_power", "divide", "true_divide", "mod")
+_OF_TWO = (
+    *("minimum", "maximum", "fmin", "fmax", "arctan2", "hypot", "copysign"),
+    *("power", "float_power", "divide", "true_divide", "mod"),
+)
 _MATH = {"asin": "arcsin", "acos": "arccos", "atan": "arctan", "phase": "angle"}
-_MATH_OF_TWO = {"atan2": "arctan2", "hypot": "hypot", "pow": "power", "fmod": "fmod"}
+_MATH_OF_TWO = {
+    "atan2": "arctan2",
+    "hypot": "hypot",
+    "pow": "power",
+    "fmod": "fmod",
+    "copysign": "copysign",
+}
 _MADE = (
     *("zeros", "ones", "empty", "zeros_like", "ones_like", "empty_like"),
     *("eye", "identity", "full", "full_like"),
@@ -52,7 +61,8 @@ def with_lanes(space: dict[str, Any]) -> dict[str, Any]:
         known |= {id(getattr(module, name)): new for name, new in own.items()
                   if hasattr(module, name)}  # fmt: skip
     new = {name: known[id(value)] for name, value in space.items() if id(value) in known}
-    return {"float": _Float, "complex": _Complex, **new}
+    own = {"float": _Float, "complex": _Complex, "min": _LEAST, "max": _MOST}
+    return {name: one for name, one in own.items() if name not in space} | new
 
 
 def part_of(value: Any, name: str) -> Any:
@@ -140,6 +150,46 @@ def _of_two(function: Callable[[Any, Any], Any], plain: Callable[..., Any]) -> A
         return np.frompyfunc(each, 2, 1)(*entries)
 
     return asked
+
+
+def _extreme(function: Callable[[Any, Any], Any], plain: Callable[..., Any]) -> Any:
+    """The least, or the most, of several numbers, in each lane."""
+    two = _of_two(function, plain)
+
+    def asked(*given: Any, **named: Any) -> Any:
+        several = given[0] if len(given) == 1 else given
+        several = [*several] if isinstance(several, np.ndarray | list | tuple) else several
+        if named or not isinstance(several, list | tuple) or not _laned(several):
+            return plain(*given, **named)
+        return functools.reduce(two, several)
+
+    return asked
+
+
+def _where(which: Any, *rest: Any) -> Any:
+    """numpy's choice by a condition, in each lane."""
+    if len(rest) < 2 or not any(map(_laned, (which, *rest))):
+        return np.where(which, *rest)
+
+    def each(yes: Any, one: Any, other: Any) -> Any:
+        lanes = _lanes_of(yes, one, other)
+        if lanes is None:
+            return one if yes else other
+        here = lanes.here
+        lanes.work += here.size // 8
+        values = np.where(*(values_in(x, here) for x in (yes, one, other)))
+        return Laned(values, lanes, here) if values.ndim else values[()]
+
+    entries = [np.array(x, dtype=object) for x in (which, *rest)]
+    return np.frompyfunc(each, 3, 1)(*entries)
+
+
+def _clip(value: Any, least: Any = None, most: Any = None, *rest: Any, **named: Any) -> Any:
+    """numpy's clip, in each lane."""
+    if rest or named or not any(map(_laned, (value, least, most))):
+        return np.clip(value, least, most, *rest, **named)
+    value = value if least is None else _NUMPY["maximum"](value, least)
+    return value if most is None else _NUMPY["minimum"](value, most)
 
 
 def _type(value: Any) -> Any:
@@ -282,7 +332,10 @@ _NUMPY: dict[str, Any] = {
     **{name: _object(getattr(np, name)) for name in _MADE},
     **{name: _array(getattr(np, name)) for name in _ARRAYS},
     "float64": _with_float(np.float64),
+    "clip": _clip,
+    "where": _where,
 }
+_LEAST, _MOST = _extreme(np.minimum, min), _extreme(np.maximum, max)
 _OF_COMPLEX: dict[str, Any] = {
     name: _of_one(getattr(np, _MATH.get(name, name)), getattr(cmath, name))
     for name in (*_OF_ONE, *_MATH)

@@ -91,7 +91,7 @@ def chosen(
     every = [
         edit
         for edit in every
-        if not sure(edit) and edit.cost < below
+        if edit.cost < below and (_moves_to_one_of(rows, edit) or not sure(edit))
         if not (mirrors(edit) or _moves_one_of(rows, edit) or _of_a_step(edit, trial, observed))
     ]
     every = [replace(x, cost=_MADE) if _makes_one_of(rows, x) else x for x in every]
@@ -247,9 +247,14 @@ def _at_best(edit: ProgramEdit) -> float:
     return edit.cost - LIKE * (edit.kind == "name")
 
 
+def _moves_to_one_of(rows: list[Array], edit: ProgramEdit) -> bool:
+    """Whether a row is the robot's a place further on, as it may be by a convention."""
+    return edit.kind == "shifted" and _makes_one_of(rows, edit)
+
+
 def _makes_one_of(rows: list[Array], edit: ProgramEdit) -> bool:
-    """Whether numbers that are exchanged stand then as the robot has them in a row."""
-    if edit.kind != "entries swapped" or _moves_one_of(rows, edit):
+    """Whether numbers that are exchanged, or moved on, stand then as in a row of the robot's."""
+    if edit.kind not in ("entries swapped", "shifted") or _moves_one_of(rows, edit):
         return False
     first, row = edit.changes[0], getattr(edit.node, "elts", None)
     if edit.part != DATA:

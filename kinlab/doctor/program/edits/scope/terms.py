@@ -5,15 +5,16 @@ from __future__ import annotations
 import ast
 import re
 
-from kinlab.doctor.bytecode.syntax import names, nodes, text_of
+from kinlab.doctor.bytecode.syntax import factors, names, nodes, text_of
 from kinlab.doctor.program.edits.chains import without_numbers
 from kinlab.doctor.program.edits.scope.forms import entries, stem_of, summands
 from kinlab.doctor.program.observed import Observed
 
 
 def divisors_of(tree: ast.AST) -> set[str]:
-    """What something is divided by, as text."""
-    return {ast.unparse(x.right) for x in _operations(tree, ast.Div)}
+    """What something is divided by, as text, and the factors of that."""
+    below = [x.right for x in _operations(tree, ast.Div)]
+    return {text_of(one) for x in below for one in (x, *factors(x))}
 
 
 def differences_of(tree: ast.AST) -> set[frozenset[str]]:
