@@ -813,7 +813,10 @@ def several(text: str, entry: str) -> dict[str, str]:
             own_letter = head == mine or entry not in _ONE_NUMBER  # h1 beside V is a height
             if alike and here and own_letter:
                 short = name.partition("[")[0]
-                named[name if short in (name, *LONG) else f"{short}{here}"] = line
+                if len(here) > 1 and short[:1] not in TWO and short not in LONG:  # b11, of M
+                    named[_place_of(entry, here)] = line
+                else:
+                    named[name if short in (name, *LONG) else f"{short}{here}"] = line
             else:
                 own.append(line)
     named = named if len(named) > 1 else _rows(lines, entry, writing)
@@ -823,6 +826,12 @@ def several(text: str, entry: str) -> dict[str, str]:
     named = {name: _copied(line, named, writing) for name, line in named.items()}
     dollars = "$" if is_latex(text) else ""
     return {name: f"{dollars}{'; '.join([*own, line])}{dollars}" for name, line in named.items()}
+
+
+def _place_of(entry: str, places: str) -> str:
+    """An entry of a whole: ``M12``, or ``mass_matrix[0,1]``."""
+    numbers = ",".join(str(int(k) - 1) for k in places)
+    return f"{entry}[{numbers}]" if entry in LONG else f"{entry}{places}"
 
 
 _DOLLARS = re.compile(r"\$\$?([^$]+)\$\$?")

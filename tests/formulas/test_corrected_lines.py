@@ -125,3 +125,18 @@ def test_a_line_keeps_its_writer_s_names(robot, entry, typed, correct, said):
     (shown,) = found.causes[0].shown.values()
     assert re.sub(r"\s", "", shown) == re.sub(r"\s", "", correct)
     assert said in found.causes[0].sentence
+
+
+@pytest.mark.parametrize(
+    ("behind", "told", "corrected"),
+    [
+        ("+ -m2*l1*l2*s2*qd1^2", "-m2*l1*l2*s2*qd1^2 should be m2*l1*l2*s2*qd1^2", "+ m2*l1*l2*s2"),
+        ("+ (-m2*l1*l2*s2*qd1^2)", "(-m2*l1*l2*s2*qd1^2) should be (m2*", "+ (m2*l1*l2*s2*qd1^2)"),
+    ],
+)
+def test_a_sign_in_front_of_a_sign_is_no_second_one(behind, told, corrected):
+    """It was "+ -a should be - -a"."""
+    text = f"m2*l2^2*(qdd1+qdd2) + m2*l1*l2*c2*qdd1 {behind} + m2*g*l2*c12"
+    found = kl.diagnose("planar2r", "tau2", text)
+    assert told in found.sentence, found
+    assert corrected in found.causes[0].typed["tau2"], found.causes[0].typed

@@ -119,3 +119,15 @@ def test_a_matrix_and_its_entries_beside_it():
     text = rf"{matrix}\begin{{aligned}} {rows} \end{{aligned}}"
     for entry in ("M11", "M22"):
         assert kl.diagnose("planar2r_rods", entry, text).agrees
+
+
+@pytest.mark.parametrize("letter", ["b", "d", "h"])
+@pytest.mark.parametrize("whole", ["M", "mass_matrix"])
+def test_entries_by_small_letters_of_another_book(whole, letter):
+    """They were refused: b11 names no quantity, where M is asked for it is clear."""
+    eqs = [one.replace("M_", f"{letter}_") for one in M]
+    found = kl.diagnose("planar2r", whole, ", ".join(f"${one}$" for one in eqs))
+    assert found.agrees and not found.remarks, found
+    slip = ", ".join(f"${one.replace('l_2^2', 'l_2', 1)}$" for one in eqs)
+    wrong = kl.diagnose("planar2r", whole, slip)
+    assert "M22: l_2 should be l_2^2" in wrong.sentence, wrong

@@ -442,7 +442,16 @@ def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
         turned = left.value - right.value if plus else left.value + right.value
         told = N_("{old} should be {new}")
         undone = plus and first.rpartition("+")[2].strip() == second  # a - a is nobody's
-        line.edit(place, turned, (at, at + 1, other), "sign", 1.0 + undone, told, shown)
+        span = at, at + 1, other
+        opened = re.match(r"\(*-", second)
+        if opened and not is_sum(right.node):  # + -a, where the second sign is told
+            second_sign = line.source.index("-", at + 1)
+            span, less = (
+                (second_sign, second_sign + 1, ""),
+                second.replace("-", "", 1).replace("( ", "("),
+            )
+            shown = {"old": second, "new": less} if plus else shown | {"new": f"- {less}"}
+        line.edit(place, turned, span, "sign", 1.0 + undone, told, shown)
         told, term = N_("the term {term} does not belong there"), second if plus else f"-{second}"
         line.edit(place, left.value, (at, end, ""), "extra term", 1.1, told, {"term": term})
         alone = right.value if plus else -right.value

@@ -39,6 +39,8 @@ _COUNTS = ("range", "len", "isinstance", "sorted", "map", "next")
 """Calls that no number with lanes can be given."""
 _RUNS = ("enumerate", "zip", "reversed")
 """Calls that give what they are given one after another."""
+_LARGE = 30
+"""A whole number that counts nothing: one of degrees."""
 _EDIT, _ASKED = "_edit", "_asked"
 _LISTS = ast.ListComp | ast.SetComp | ast.GeneratorExp
 
@@ -310,7 +312,9 @@ class Woven:
         if isinstance(node, ast.GeneratorExp | ast.Slice | ast.Lambda):
             return False
         seen = self.observed.of(node)
-        if seen is not None and seen.whole and seen.shape is not None:
+        values = [] if seen is None else seen.values
+        large = any(np.max(np.abs(x), initial=0) >= _LARGE for x in values)
+        if seen is not None and seen.whole and seen.shape is not None and not large:
             # what counts is a whole number, or one of several that are run over
             runs = isinstance(parent, ast.For)
             return not runs if seen.shape else isinstance(parent, ast.List)
