@@ -99,3 +99,24 @@ def test_terms_that_are_left_out_are_told_alone():
     """It added "or: the formula leaves M out in the rotors' inertia", of an arm without rotors."""
     found = kl.diagnose("planar2r", "tau2", "m2*g*l2*c12")
     assert [one.kinds for one in found.causes] == [("acceleration left out",)], found
+
+
+NUMBERS = M % "m2*l2^2 + m2*l1*l2*c2"
+
+
+@pytest.mark.parametrize("other", ["C = [1, 2; 3, 4]", "g = [m1*g*l1; m2]"])
+@pytest.mark.parametrize("asked", ["M", "M12"])
+def test_another_matrix_beside_is_told(asked, other):
+    """A matrix that nothing uses was passed over."""
+    for text in (f"{other}; {NUMBERS}", f"{NUMBERS}; {other}"):
+        found = kl.diagnose("planar2r", asked, text)
+        assert found.agrees, found
+        assert found.remarks[-1].endswith(f"not judged: what is given for {other[0]}"), found
+
+
+def test_a_matrix_that_is_used_or_of_names_is_not_told():
+    used = r"$T = \frac12 \dot q^T M \dot q$ with $M = \begin{bmatrix} (m_1+m_2)l_1^2 + m_2l_2^2 + 2m_2l_1l_2c_2 & m_2l_2^2 + m_2l_1l_2c_2 \\ m_2l_2^2 + m_2l_1l_2c_2 & m_2l_2^2 \end{bmatrix}$"
+    names = "M12 = m2*l2^2 + m2*l1*l2*c2; M22 = m2*l2^2; M = [M11 M12; M12 M22]"
+    for asked, text in (("T", used), ("M12", names.replace("M22 = m2*l2^2; ", ""))):
+        found = kl.diagnose("planar2r", asked, text)
+        assert found.agrees and not found.remarks, found

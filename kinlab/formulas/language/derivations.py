@@ -32,6 +32,11 @@ _PROGRAM = re.compile(
 _GRID = re.compile(r"\\begin\{(\w*(?:matrix|array|cases)\*?)\}.{0,2000}?\\end\{\1\}", re.DOTALL)
 """A matrix, which is no entry."""
 _A_GRID = "\0"
+_NAMES_ALONE = re.compile(
+    r"(?:\s|&|\\\\|\\(?:begin|end)\{[\w*]+\}(?:\{[lcr| ]*\})?|\\?[A-Za-z]+(?:_\{?\w+\}?|\d+)?)*"
+)
+_NAMES_LISTED = re.compile(r"\s*\[(?:[\s,;]|[A-Za-z]\w*)*\]\s*")
+"""A matrix of names, which others explain."""
 _LINES = re.compile(
     r"\\\\(?:\[[\w. ]{0,9}\])?|\\(?:begin|end)\{[a-z]+\*?\}|\\[\[\]()]|\$+|&|\\q?quad(?![A-Za-z])"
     r"|\\(?:Rightarrow|Longrightarrow|implies|therefore|Leftrightarrow|iff)(?![A-Za-z])"
@@ -60,7 +65,10 @@ _OF_A_LINE = ("\n", "#", "//", "%")
 """What ends a formula whatever is behind it: a line's end, a comment."""
 _SQUARE = re.compile(r"(?:\^\{?2\}?|²|\*\*2)$")
 _NUMBER = re.compile(r"[\d₀-₉]")
-_OF_LETTERS = re.compile(r"[^\W\d_]{1,8}_?\{?\d.*[^\W\d_]|[*/^+]|\\frac|sin|cos|^[lmIg]_?c?\d")
+_OF_LETTERS = re.compile(
+    r"[^\W\d_]{1,8}_?\{?\d.*[^\W\d_]|[*/^+]|\\frac|sin|cos|^[lmIg]_?c?\d"
+    r"|^\[.*[,;]"
+)
 _STEPS, _LONGEST = 6, 8000
 _TWO = 2
 _BLANKS = re.compile(r"(?<!\s)\s*\n\s*")
@@ -147,6 +155,7 @@ def steps_beside(text: str, entry: str) -> list[str]:
         one.name
         for one in _told(text)
         if _OF_LETTERS.search(one.right)
+        and not _NAMES_LISTED.fullmatch(one.right)
         and not is_name_of(one.name, entry)
         and not begins_with(f"{one.name} = 0", entry)  # x is an entry of T, and no name of it
         and not is_sister(one.name, entry)
@@ -181,7 +190,12 @@ def _told(text: str) -> list[_Equation]:
 
 
 def _all(text: str) -> list[_Equation]:
-    return [*_equations(_in_lines(_BLANKS.sub("\n", _GRID.sub(_A_GRID, text))))]
+    return [*_equations(_in_lines(_BLANKS.sub("\n", _GRID.sub(_as_a_grid, text))))]
+
+
+def _as_a_grid(found: re.Match[str]) -> str:
+    """A sign for a matrix, with a product where it is of more than names."""
+    return _A_GRID if _NAMES_ALONE.fullmatch(found[0]) else f"{_A_GRID}*"
 
 
 def _in_lines(text: str) -> str:
