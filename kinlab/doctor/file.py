@@ -810,7 +810,7 @@ def of_robot(document: Mapping[str, Any], path: str, robot: Mechanism) -> Formul
                 given = {**document, "formulas": {whole: text}}
                 file = formula_file(given, path, None, *known)
                 require_whole(as_judged(file, robot), robot)
-                return entry_of(file, entry, robot)
+                return replace(entry_of(file, entry, robot), whole=whole)
         raise
 
 

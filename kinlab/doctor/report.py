@@ -255,7 +255,8 @@ def _of_sound(
         return _judged(of_file(read_formulas(document, path), samples, seed), path)
     except KinlabError as problem:
         lost = Unread(path, problem)
-    bad = []
+    bad: list[Unread] = []
+    judged: list[Diagnosis] = []
     left = document
     claimed: dict[str, str] = {}
     for entry in entries_of(document):
@@ -271,16 +272,23 @@ def _of_sound(
                 said = twice(places[again[0]], claimed[again[0]])
                 raise ExpressionError(f"{path}: {said}")
             claimed |= places
+            if not one.whole:
+                continue
+            some, more = _judged(of_file(one, samples, seed), path)
+            judged += some
+            bad += more
         except KinlabError as problem:
             bad.append(Unread(f"{path}: {entry}", problem))
-            left = with_entries(left, set(entries_of(left)) - {entry})
-    if not bad or not entries_of(left):
-        return [], bad if len(bad) > 1 else [lost]
+        left = with_entries(left, set(entries_of(left)) - {entry})
+    if not entries_of(left):
+        return judged, bad if judged or len(bad) > 1 else [lost]
+    if left is document:
+        return [], [lost]
     try:
-        judged, more = _judged(of_file(read_formulas(left, path), samples, seed), path)
-        return judged, [*bad, *more]
+        others, more = _judged(of_file(read_formulas(left, path), samples, seed), path)
+        return [*judged, *others], [*bad, *more]
     except KinlabError as problem:
-        return [], [*bad, Unread(path, problem)]
+        return judged, [*bad, Unread(path, problem)]
 
 
 def _judged(found: list[Diagnosis], path: str) -> tuple[list[Diagnosis], list[Unread]]:

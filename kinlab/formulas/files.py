@@ -93,6 +93,7 @@ class FormulaFile:
         unread: words beside an entry's formula that may change what it claims.
         parts: rows, columns and blocks of a quantity that were given, with their entries.
         matrices: entries that were given in a matrix, with what that one is called.
+        whole: the quantity that its only entry was taken out of; empty where it was given alone.
     """
 
     path: str
@@ -113,6 +114,7 @@ class FormulaFile:
     symbols_typed: Mapping[str, str] = field(default_factory=dict)
     parts: Mapping[str, list[str]] = field(default_factory=dict)
     matrices: Mapping[str, str] = field(default_factory=dict)
+    whole: str = ""
 
 
 def formula_file(

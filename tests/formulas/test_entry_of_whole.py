@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 import kinlab as kl
+from kinlab.doctor.report import of_document
 from kinlab.errors import ExpressionError
 
 M = "M = [(m1+m2)*l1^2 + m2*l2^2 + 2*m2*l1*l2*c2, m2*l2^2 + m2*l1*l2*c2; %s, m2*l2^2]"
@@ -120,3 +121,25 @@ def test_a_matrix_that_is_used_or_of_names_is_not_told():
     for asked, text in (("T", used), ("M12", names.replace("M22 = m2*l2^2; ", ""))):
         found = kl.diagnose("planar2r", asked, text)
         assert found.agrees and not found.remarks, found
+
+
+def test_a_file_of_several_has_each_out_of_its_own_whole():
+    """Where each can be read alone, and not all together, the whole file was refused."""
+    document = {
+        "robot": "planar2r",
+        "formulas": {
+            "M12": NUMBERS,
+            "V": f"P = {V}",
+            "g1": "K = [1, 2]",
+            "y": "p = [l1*c1 + l2*c12; l1*s1 + l2*s2]",
+        },
+    }
+    judged, unread = of_document(document, "hand.toml")
+    assert [(one.function, one.agrees) for one in judged] == [
+        ("M12", True),
+        ("y", False),
+        ("V", True),
+    ]
+    assert [one.what for one in unread] == ["hand.toml: g1"]
+    judged, unread = of_document(document | {"formulas": {"M12": NUMBERS}}, "hand.toml")
+    assert judged[0].agrees and not unread
