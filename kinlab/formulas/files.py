@@ -264,7 +264,7 @@ def _formula_file(
         own, entries[key] = with_matrices(own, entries[key], f"{place}: {key}")
         for name in put_in.keys() - own.keys():
             beside = (text for other, text in texts.items() if other != name)
-            opened |= {name} if any(map(partial(_has, name), beside)) else set()
+            opened |= {name} if any(map(partial(typed.stands_in, name), beside)) else set()
         alone = last is not None and last.number == 1
         before[key] = [_by_its_entry(one, key, alone) for one in before[key]]
         entries[key] = _by_its_entry(entries[key], key, alone)
@@ -339,12 +339,6 @@ def _formula_file(
             remarks[key] = "; ".join(filter(None, (remarks.get(key), said)))
     file = replace(file, others=tuple(others), broken=broken)
     return replace(file, remarks=remarks, unread=unread, matrices=matrices)
-
-
-def _has(name: str, text: str) -> bool:
-    """Whether a formula has a name, as typed or joined up."""
-    plain = re.search(rf"(?<![A-Za-z\\]){re.escape(name)}(?![A-Za-z\d])", text)
-    return bool(plain) or typed.stands_in(name, typed.joined_up(text))
 
 
 def _by_its_entry(text: str, key: str, alone: bool) -> str:

@@ -545,7 +545,8 @@ def explained(text: str, entry: str = "", place: str = "expression") -> tuple[di
         ExpressionError: a name is explained twice, and not alike.
     """
     lines, gives = _in_order(text, entry)
-    own = [_ends(line) for line in lines[:-1] if line not in gives]
+    others = [line for line in lines[:-1] if line not in gives]
+    own = [*map(_ends, others)]
     if not lines[:-1] or not all(map(_may_be_taken, lines[:-1])):
         return {}, text
     left = lines[-1].partition("=")[0] if "=" in lines[-1] else ""
@@ -557,12 +558,12 @@ def explained(text: str, entry: str = "", place: str = "expression") -> tuple[di
         named = entry_name(left, writing=hand([text]))
         if not of_one_name(named, entry_name(entry)):
             return {}, text
-    for name, sides in _explaining([line for line in lines[:-1] if line not in gives]).values():
+    for name, sides in _explaining(others).values():
         if _held_against_the_last(sides)[0]:
             raise refused(place, EXPLAINED_TWICE, name=name)
     dollars = "$" if is_latex(text) else ""
     formulas = {own_name(name): f"{dollars}{bare(right)}{dollars}" for name, _sign, right in own}
-    for line in (line for line in lines[:-1] if line not in gives):
+    for line in others:
         for name in _also_given(line):
             formulas.setdefault(own_name(name), f"{dollars}{bare(_ends(line)[2])}{dollars}")
     return formulas, f"{dollars}{lines[-1]}{dollars}"
@@ -730,19 +731,26 @@ def explains_another(line: str, lines: list[str]) -> bool:
         lines: all there are.
     """
     name = line.partition("=")[0].strip("& ")
-    return any(stands_in(name, right) for right in _rights(tuple(lines)))
+    return any(stands_in(name, one.partition("=")[2]) for one in lines)
 
 
-def stands_in(name: str, plain: str) -> bool:
-    """Whether a name, as typed, is used in a text that is joined up."""
-    return bool(re.search(rf"(?<![A-Za-z]){re.escape(joined_up(name))}(?![\d₀-₉])", plain))
+def stands_in(name: str, text: str) -> bool:
+    """Whether a name is used in a text.
+
+    Args:
+        name, text: as typed.
+    """
+    used = rf"(?<![A-Za-z\\]){re.escape(joined_up(name))}(?![A-Za-z_\d₀-₉])"
+    return bool(re.search(used, text)) or any(
+        re.search(rf"(?<![A-Za-z]){re.escape(joined_up(name))}(?![\d₀-₉])", plain)
+        for plain in _both_ways(text)
+    )
 
 
-@lru_cache(maxsize=16)
-def _rights(lines: tuple[str, ...]) -> list[str]:
-    """The right sides of lines, joined up, with their commands and as names alone."""
-    rights = [line.partition("=")[2] for line in lines]
-    return [*map(joined_up, rights), *(joined_up(_COMMAND.sub(" +", right)) for right in rights)]
+@lru_cache(maxsize=256)
+def _both_ways(text: str) -> tuple[str, str]:
+    """A text joined up, with its commands and as names alone."""
+    return joined_up(text), joined_up(_COMMAND.sub(" +", text))
 
 
 _COMMAND = re.compile(r"\\(?:(?:begin|end)\{\w+\*?\}|(?=[A-Za-z]))")

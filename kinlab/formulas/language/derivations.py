@@ -20,7 +20,6 @@ from kinlab.formulas.typed import (
     begins_with,
     is_name_of,
     is_sister,
-    joined_up,
     own_name,
     says_what_it_is,
     stands_in,
@@ -257,9 +256,9 @@ def _explaining(chain: str, others: dict[str, _Equation]) -> list[_Equation]:
     kept: dict[str, _Equation] = {}
     waiting = [chain.partition("=")[2]]
     while waiting:
-        plain = joined_up(waiting.pop())
+        text = waiting.pop()
         for name, one in others.items():
-            if stands_in(one.name, plain) and name not in kept:
+            if stands_in(one.name, text) and name not in kept:
                 kept[name] = one
                 waiting.append(one.right)
     return [*reversed(kept.values())]

@@ -406,7 +406,7 @@ def _targets(line: ast.stmt) -> list[ast.expr]:
 
 def _mirrored(target: ast.Subscript) -> ast.stmt | None:
     """The entry on the other side of the diagonal: ``M[j, i] = M[i, j]``."""
-    keys = target.slice.elts if isinstance(target.slice, ast.Tuple) else []
+    keys = _keys(target)
     if len(keys) != 2 or any(isinstance(one, ast.Slice) for one in keys):
         return None
     if ast.unparse(keys[0]) == ast.unparse(keys[1]):
@@ -420,16 +420,16 @@ def _mirrored(target: ast.Subscript) -> ast.stmt | None:
 
 def _of_other_entries(line: ast.stmt, scope: Scope) -> Iterator[ast.stmt]:
     """Lines that set an entry beside, as the line's turned value, or the entries left."""
-    target = _targets(line)[0]
-    assert isinstance(target, ast.Subscript) and isinstance(line, ast.Assign | ast.AugAssign)
-    keys = target.slice.elts if isinstance(target.slice, ast.Tuple) else [target.slice]
+    target = _entry_of(line)
+    assert isinstance(line, ast.Assign | ast.AugAssign)
+    keys = _keys(target)
     sizes = scope.observed.shape(target.value) or ()
     for k, key in enumerate(keys):
         if isinstance(key, ast.Constant) and type(key.value) is int:
             for step in (1, -1):
                 if key.value + step >= 0:
                     other = Turned(scope.shapes).visit(copied(line))
-                    _put(other, k, ast.Constant(key.value + step))
+                    _put(_entry_of(other), k, ast.Constant(key.value + step))
                     yield other
         elif isinstance(key, ast.Slice):
             shape = scope.observed.shape(line.value) or ()
@@ -440,41 +440,43 @@ def _of_other_entries(line: ast.stmt, scope: Scope) -> Iterator[ast.stmt]:
                 continue
             for _text, piece in scope.simple(shape):
                 other = copied(line)
-                _put(other, k, rest)
+                _put(_entry_of(other), k, rest)
                 other.value = piece
                 yield other
 
 
 def _on_the_rest(line: ast.stmt, scope: Scope) -> Iterator[ast.stmt]:
     """What is done to some rows in place, to the others: ``J[3:] = R @ J[3:]``."""
-    target = _targets(line)[0]
-    assert isinstance(target, ast.Subscript)
-    keys = target.slice.elts if isinstance(target.slice, ast.Tuple) else [target.slice]
-    sizes = scope.observed.shape(target.value) or ()
-    own = ast.unparse(target)
-    for k, key in enumerate(keys[: len(sizes)]):
+    target = _entry_of(line)
+    sizes, own = scope.observed.shape(target.value) or (), ast.unparse(target)
+    for k, key in enumerate(_keys(target)[: len(sizes)]):
         rest = _complement(key, sizes[k]) if isinstance(key, ast.Slice) else None
         if isinstance(rest, ast.Slice):
             other = copied(line)
             same = [x for x in nodes(other) if isinstance(x, ast.Subscript)]
             same = [x for x in same if ast.unparse(x) == own]
             for one in same:
-                held = one.slice.elts if isinstance(one.slice, ast.Tuple) else None
-                if held is None:
-                    one.slice = copied(rest)
-                else:
-                    held[k] = copied(rest)
+                _put(one, k, copied(rest))
             if len(same) > 1:  # it is set, and used
                 yield other
 
 
-def _put(line: ast.stmt, k: int, key: ast.expr) -> None:
+def _entry_of(line: ast.stmt) -> ast.Subscript:
+    """What a line sets, of one that sets an entry."""
     target = _targets(line)[0]
     assert isinstance(target, ast.Subscript)
-    if isinstance(target.slice, ast.Tuple):
-        target.slice.elts[k] = key
+    return target
+
+
+def _keys(entry: ast.Subscript) -> list[ast.expr]:
+    return entry.slice.elts if isinstance(entry.slice, ast.Tuple) else [entry.slice]
+
+
+def _put(entry: ast.Subscript, k: int, key: ast.expr) -> None:
+    if isinstance(entry.slice, ast.Tuple):
+        entry.slice.elts[k] = key
     else:
-        target.slice = key
+        entry.slice = key
 
 
 def _complement(key: ast.Slice, size: int) -> ast.expr | None:
