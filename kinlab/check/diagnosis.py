@@ -197,7 +197,7 @@ class Diagnosis(Answer):
         if self.causes:
             return self.causes[0].sentence
         if self.form == "words":
-            return not_judged(self.title, self.remarks[0])
+            return not_judged(self.title, _("; ").join(self.remarks))
         if self.form == "near":
             said = _(
                 "{function} is {quantity} of {robot} to {digits} digits only: rounded constants, "

@@ -359,14 +359,17 @@ def _possible(
     split: Apart | None = None
     if not causes and not signs:
         split = apart(case)
-        # two readings of a program of which no line explains it fit by accident more often
-        if program is None and not solved:
+        if not solved and (program is None or not program.written_out):
             slack = min(_left(worst), TOLERANCES.slips_leave)
             few = case if written else replace(case, slack=slack)
             found_ = one_for_each_kind(few, ways, split)
             found_ = found_ or several_taken_otherwise(few, ways, split)
             causes = _exactly([_as_steps(found) for found in found_], worst)
-            causes = causes or _exactly([*in_pairs(few, tried)], worst)
+            # two readings of a program of which no line explains it fit by accident more often
+            if program is None:
+                causes = causes or _exactly([*in_pairs(few, tried)], worst)
+            else:
+                causes = [*map(_without_a_line, causes)]
     if not causes and signs:
         causes = [*in_pairs(case, tried)]
     if same and all(len(cause.kinds) > LIST for cause in causes):

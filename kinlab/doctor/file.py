@@ -204,8 +204,15 @@ def _judged_with(
     turned = any(one.turned for one in unread) or _is_negative(found)
     if not turned and _names_as_much(found, formulas):
         return found
-    said = words_unread(unread[0].words)
-    return replace(found, causes=(), partial=(), proved=(), form="words", remarks=(said,))
+    told = [words_unread(unread[0].words)]
+    if found.causes:
+        then = _("if it is {entry} in every state, it has a slip: {cause}")
+        if turned:
+            then = _(
+                "if it is {entry} in every state, by the robot's own axes, it has a slip: {cause}"
+            )
+        told += [then.format(entry=found.title, cause=found.causes[0].sentence)]
+    return replace(found, causes=(), partial=(), proved=(), form="words", remarks=tuple(told))
 
 
 def words_unread(words: str) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 import kinlab as kl
+from kinlab.doctor.report import of_document
 from kinlab.errors import ExpressionError
 
 OWN = "m1*l1^2/12 + m1*l1^2/4"
@@ -35,6 +36,48 @@ def test_a_side_behind_words_that_nobody_has_listed_is_not_passed_over(words):
     assert right.agrees and any("were not read" in one for one in right.remarks), right
     with pytest.raises(ExpressionError, match="were not read"):
         kl.diagnose("single_link", "M11", f"M11 = {OWN} {words}= m1*l1^2")
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "right", "old", "new", "slip"),
+    [
+        (
+            "planar2r_rods",
+            "M11",
+            "Model solution, exercise 4.2: M11 = I1 + m1*lc1^2 + I2 + m2*(l1^2 + lc2^2 + 2*l1*lc2*c2)",
+            "I2 + ",
+            "",
+            "if it is M11 in every state, it has a slip: M11: the term I2 is missing",
+        ),
+        (
+            "scara",
+            "z",
+            "Since the third joint points downwards, z = d1 - q3.",
+            "- q3",
+            "+ q3",
+            "by the robot's own axes, it has a slip: z: + q3 should be - q3",
+        ),
+    ],
+    ids=["term", "axes"],
+)  # fmt: skip
+def test_beside_words_that_nobody_has_listed_a_slip_is_told_as_what_it_may_be(
+    robot, entry, right, old, new, slip
+):
+    """It is not called wrong: the words may say when it holds."""
+    assert kl.diagnose(robot, entry, right).agrees
+    with pytest.raises(ExpressionError, match="not judged") as refusal:
+        kl.diagnose(robot, entry, right.replace(old, new))
+    assert slip in str(refusal.value)
+
+
+def test_what_it_may_be_is_told_of_one_line_of_a_file():
+    slip = "Model solution, exercise 4.2: M11 = (m1+m2)*l1^2 + m2*l2^2 + m2*l1*l2*c2"
+    document = {"robot": "planar2r", "formulas": {"M11": slip, "g2": "m2*g*l2*c12"}}
+    judged, unread = of_document(document, "hand.toml")
+    assert [one.agrees for one in judged] == [True]
+    (lost,) = unread
+    assert "if it is M11 in every state" in str(lost.reason), lost
+    assert "m2*l1*l2*c2 should be 2*m2*l1*l2*c2" in str(lost.reason), lost
 
 
 @pytest.mark.parametrize(

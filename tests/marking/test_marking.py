@@ -90,6 +90,9 @@ def test_words_that_were_not_read_cost_no_point_as_a_slip():
     found = marked({"q1": "for the stretched arm: x = l1 + l2", "q2": f"Hence g1 = {G1}"})
     assert found["q1"].verdict == "could not be read" and "stretched arm" in found["q1"].remark
     assert found["q2"].verdict == "right"
+    assert "has a slip" not in found["q1"].remark  # nor what it would be without them
+    lost = marked({"q2": "Model solution, exercise 4.2: g1 = (m1+m2)*g*l1*c1"}, "place")["q2"]
+    assert lost.verdict == "could not be read" and "l2" not in lost.remark, lost.remark
     own = marked({"q4": "for the stretched arm q4 = m1*g*l1"})["q4"]
     assert own.verdict == "could not be read" and "stretched arm" in own.remark
 

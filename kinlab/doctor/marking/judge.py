@@ -211,7 +211,7 @@ def _of_diagnoses(
     if not asked:
         said = _("{question}: none of the formulas is {entry}")
         raise ExpressionError(said.format(question=question.id, entry=question.entry))
-    refuse_unjudged(asked)
+    refuse_unjudged(replace(one, remarks=one.remarks[:1]) for one in asked)  # not what it would be
     whole = "[" not in question.quantity
     if whole and any("[" in one.quantity for one in asked) and not _all_given(asked, file, robot):
         return _in_part(question, asked, file, robot)

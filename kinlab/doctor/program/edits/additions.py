@@ -13,7 +13,15 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import called, copied, factors, names, nodes, text_of
 from kinlab.doctor.program.edits import chains
-from kinlab.doctor.program.edits.scope.forms import Turned, statement_of, stem_of, summands
+from kinlab.doctor.program.edits.numbers.data import GRAVITY
+from kinlab.doctor.program.edits.scope.forms import (
+    Turned,
+    member,
+    named,
+    statement_of,
+    stem_of,
+    summands,
+)
 from kinlab.doctor.program.edits.scope.part import CENTRES, Scope
 from kinlab.doctor.program.edits.scope.terms import of_any_link
 from kinlab.doctor.program.edits.single.whole import value_of, whole_constant
@@ -129,6 +137,15 @@ _THRICE = 3
 """How often a name may stand in a sum of three equal links."""
 
 
+_SHARES, _SHARED = (3, 4, 6, 12), 1.14
+"""What inertias and torques are divided by, beside halves, and cost of such a share for the whole.
+"""
+_MIXED_SQUARE = 1.06
+"""Cost of the square of their product, taken from that of the squares of two vectors."""
+_FALLING, _FALLING_TOO = 1.04, 1.12
+"""Cost of gravity for a name of it that nothing uses, and for one that something does."""
+_ROOTS = 1.14
+"""Cost of the roots of what is returned, for their squares."""
 _QUADRATIC = 1.0
 """Cost of the half of a quadratic form for all of it."""
 _HALF_SQUARED = 1.09
@@ -175,10 +192,19 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         unpacked = isinstance(parent, ast.Assign) and isinstance(parent.targets[0], ast.Tuple)
         cost = 1.14 if isinstance(parent, ast.Call) else 1.16 if unpacked else 1.1
         yield here.instead(ast.Call(total, [node], []), "function", cost)
+    if shape in ((2,), (3,)) and isinstance(node, ast.Name):
+        yield from _falling(here, scope, shape[0])
+    if isinstance(parent, ast.Return) and len(shape) == 1 and scope.has_numpy:
+        root = ast.Attribute(ast.Name("np", ast.Load()), "sqrt", ast.Load())
+        array = isinstance(node, ast.Call) and called(node) in ("array", "asarray")
+        entries = node.args[:1] if array else [node]
+        yield here.instead(ast.Call(root, entries, []), "function", _ROOTS)
     squared = isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.Pow)
     if squared and here.field == "left" and isinstance(node, ast.Name | ast.Attribute):
         half = ast.BinOp(node, ast.Div(), number(2))
         yield here.instead(half, "missing factor", _HALF_SQUARED)
+    if shape == () and isinstance(node, ast.BinOp):
+        yield from _of_inertias(here, scope)
     for term in _in_the_other_case(here) if zero else ():
         if scope.observed.shape(term) == ():
             yield here.instead(copied(term), "number", 1.06)
@@ -239,9 +265,9 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         array = isinstance(node, ast.Call) and called(node) in ("array", "asarray")
         used = (array or here.field == "elt") and _is_a_term_elsewhere(here)
         for value in (2, 0.5, *([_THRICE] * (isinstance(node, ast.Name) and not trig))):
-            named = isinstance(node, ast.BinOp) and not isinstance(node.right, ast.Constant)
+            of_names = isinstance(node, ast.BinOp) and not isinstance(node.right, ast.Constant)
             times = chains.without_two(node) if value < 1 else None
-            times = times or (chains.part_of(node, 2) if value < 1 and named else None)
+            times = times or (chains.part_of(node, 2) if value < 1 and of_names else None)
             times = times or chains.times(number(value), node)
             rare = trig or value == _THRICE
             cost = 1.15 if rare else 1.05 + _ODD * (passed or counted)
@@ -387,6 +413,47 @@ def _divided(here: Here, scope: Scope, summand: bool) -> Iterator[ProgramEdit]:
         if text in scope.divisors and text not in own:
             new = ast.BinOp(node, ast.Div(), divisor)
             yield here.instead(new, "missing factor", _DIVIDED)
+
+
+def _falling(here: Here, scope: Scope, size: int) -> Iterator[ProgramEdit]:
+    """An acceleration with gravity's, that the program has."""
+    for name, known in scope.shapes.items() if scope.has_numpy else ():
+        if known == () and GRAVITY.match(name):
+            cost = _FALLING if name in scope.unused else _FALLING_TOO
+            row = ast.List([*[number(0)] * (size - 1), named(name)], ast.Load())
+            upwards = ast.Call(member(named("np"), "array"), [row], [])
+            yield here.instead(ast.BinOp(here.node, ast.Add(), upwards), "missing term", cost)
+
+
+def _of_inertias(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """A share of what is divided, ``I/(3*j**2)``; of squares of two vectors that of their product:
+    ``w @ w * (r @ r) - (w @ r)**2``.
+    """
+    node = here.node
+    assert isinstance(node, ast.BinOp)
+    if isinstance(node.op, ast.Div) and not isinstance(node.right, ast.Constant):
+        for value in _SHARES:
+            below = chains.times(number(value), node.right)
+            yield here.instead(ast.BinOp(node.left, ast.Div(), below), "factor", _SHARED)
+    first, second = _squared(node.left), _squared(node.right)
+    if isinstance(node.op, ast.Mult) and first and second:
+        mixed = copied(node.left)
+        if isinstance(mixed, ast.BinOp):
+            mixed.right = second
+        elif isinstance(mixed, ast.Call):
+            mixed.args = [first, second]
+        square = ast.BinOp(mixed, ast.Pow(), number(2))
+        yield here.instead(ast.BinOp(node, ast.Sub(), square), "missing term", _MIXED_SQUARE)
+
+
+def _squared(node: ast.expr) -> ast.expr | None:
+    """The vector whose square it is: ``w @ w``, ``np.dot(w, w)``."""
+    pair: list[ast.expr] = []
+    if isinstance(node, ast.Call) and called(node) in ("dot", "inner", "vdot"):
+        pair = node.args
+    elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult):
+        pair = [node.left, node.right]
+    return pair[0] if len(pair) == 2 and text_of(pair[0]) == text_of(pair[1]) else None
 
 
 def _is_called_a_centre(here: Here) -> bool:
@@ -578,7 +645,7 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
     node, parent = here.node, here.parent
     own = text_of(node)
     power = isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.Pow)
-    named = isinstance(node, ast.Name | ast.Subscript)
+    a_name = isinstance(node, ast.Name | ast.Subscript)
     beside = _factors_beside(here) if term else set()
     dot = isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult)  # (v @ u)**2
     dot = dot or (isinstance(node, ast.Call) and called(node) in ("dot", "norm", *scope.called))
@@ -596,12 +663,12 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
     if operated:
         yield from _masses_behind(here, scope)
         yield from _beside_a_part(here, scope)
-    doubled = _of_the_same_values(here, scope) if named and operated and not term else ()
+    doubled = _of_the_same_values(here, scope) if a_name and operated and not term else ()
     for text, scalar in scope.pieces_here(()).items():
         if text == own or isinstance(scalar, ast.BinOp | ast.UnaryOp):
             continue
         dear = 0.0 if text in beside else scope.dear(scalar)
-        if named and isinstance(node, ast.Subscript) and isinstance(scalar, ast.Name):
+        if a_name and isinstance(node, ast.Subscript) and isinstance(scalar, ast.Name):
             yield here.instead(scalar, "name", 1.05 + dear)
         elif isinstance(node, ast.Attribute) and isinstance(scalar, ast.Name):
             yield here.instead(scalar, "name", 1.03 if node.attr == text else 1.08 + dear)
@@ -613,7 +680,7 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
                 square = ast.BinOp(scalar, ast.Pow(), number(2))
                 new = ast.BinOp(node, ast.Mult(), square)
                 yield here.instead(new, "missing factor", 1.12 + dear)
-        elif named and operated and (text[0] == own[0] or not dear or _of_one_link(text, own)):
+        elif a_name and operated and (text[0] == own[0] or not dear or _of_one_link(text, own)):
             both = sorted((own, text))  # a sum that stands elsewhere, as it is written there
             dear = 0.0 if " + ".join(both) in scope.pieces_here(()) else dear
             if _stems(text, own) in scope.sums:  # a2 + r2 beside a3 + r3

@@ -199,8 +199,11 @@ def _without_gravity(trial: Trial, observed: Observed, down: Array) -> Iterator[
     for part, tree in enumerate(trial.trees):
         for here in places(part, tree):
             zeros = isinstance(here.node, ast.Call) and called(here.node) == "zeros"
-            if zeros and observed.shape(here.node) == down.shape:
-                for vector in (-down, down):
+            shape = observed.shape(here.node) if zeros else None
+            if shape in ((len(down),), (2 * len(down),)):
+                still = np.zeros(len(down))
+                ways = [down] if shape == down.shape else [np.r_[still, down], np.r_[down, still]]
+                for vector in (sign * way for way in ways for sign in (-1, 1)):
                     row = ast.List([number(float(x)) for x in vector + 0.0], ast.Load())
                     array = ast.Attribute(ast.Name("np", ast.Load()), "array", ast.Load())
                     new = ast.Call(array, [row], [])

@@ -1,0 +1,151 @@
+"""Steps that known formulas have: roots, shares of an inertia, an identity, gravity's acceleration.
+
+And what amounts to two of them, where no line of the program is found that does it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hand_programs import asked, told_in_its_line, written
+
+import kinlab as kl
+from kinlab.doctor.changes import Case
+from kinlab.doctor.program.words import WrongLines
+
+GAINS = """
+import numpy as np
+
+l1, l2, e = 0.3, 0.5, 0.2/np.sqrt(2)
+m = 1.0
+IA = 1.0*0.3*0.3/12 + 1.0*0.15**2
+
+def f(xy, mode):
+    J = np.empty((2, 2))
+    for i in range(2):
+        p = xy - np.array([(1 - 2*i)*e, 0])
+        n = np.hypot(*p)
+        t = np.arctan2(p[1], p[0]) - mode[i]*np.arccos((n*n + l1*l1 - l2*l2)/(2*l1*n))
+        u = np.array([np.cos(t), np.sin(t)])
+        w = (p - l1*u)/l2
+        J[i] = w/(l1*(u[0]*w[1] - u[1]*w[0]))
+    A = IA*J + m*np.linalg.inv(J).T
+    A = A.T @ A
+    half = np.trace(A)/2
+    gap = np.sqrt(half**2 - np.linalg.det(A))
+    return np.sqrt([half + gap, half - gap])
+"""
+LEAST = """
+def f(IL, j):
+    smallest = IL/(3.0*j**2)
+    largest = IL/j**2
+    return [smallest, largest]
+"""
+TURNING = """
+import numpy as np
+
+def f(points, masses, omega):
+    T = 0.0
+    for p, m in zip(points, masses):
+        T += 0.5*m*(np.dot(omega, omega)*np.dot(p, p) - np.dot(omega, p)**2)
+    return T
+"""
+ARTICULATED = """
+import numpy as np
+
+l1, l2, m1, m2, g = 0.5, 0.4, 2.0, 1.5, 9.81
+
+def f(q, v, tau):
+    S = np.array([0, 0, 1.0, 0, 0, 0])
+    X, v0, c = [], np.zeros(6), []
+    IA, pA = [], []
+    V = v0
+    for i in range(2):
+        L, m = (0.0, l1)[i], (m1, m2)[i]
+        r = (l1, l2)[i]
+        C, s = np.cos(q[i]), np.sin(q[i])
+        E = np.array([[C, s, 0], [-s, C, 0], [0, 0, 1]])
+        P = np.array([[0, 0, 0], [0, 0, -L], [0, L, 0]])
+        Xi = np.block([[E, np.zeros((3, 3))], [-E @ P, E]])
+        V = Xi @ V + S*v[i]
+        w, u = V[:3], V[3:]
+        wx = np.array([[0, -w[2], w[1]], [w[2], 0, -w[0]], [-w[1], w[0], 0]])
+        ux = np.array([[0, -u[2], u[1]], [u[2], 0, -u[0]], [-u[1], u[0], 0]])
+        cross = np.block([[wx, np.zeros((3, 3))], [ux, wx]])
+        c.append(cross @ (S*v[i]))
+        h = np.array([[0, 0, 0], [0, 0, -r], [0, r, 0]])
+        I = np.block([[m*h @ h.T, m*h], [m*h.T, m*np.eye(3)]])
+        X.append(Xi); IA.append(I); pA.append(-cross.T @ (I @ V))
+    U, D, b = [None]*2, [0]*2, [0]*2
+    for i in (1, 0):
+        U[i] = IA[i] @ S
+        D[i] = S @ U[i]
+        b[i] = tau[i] - S @ pA[i]
+        if i:
+            Ia = IA[1] - np.outer(U[1], U[1])/D[1]
+            pa = pA[1] + Ia @ c[1] + U[1]*b[1]/D[1]
+            IA[0] = IA[0] + X[1].T @ Ia @ X[1]
+            pA[0] = pA[0] + X[1].T @ pa
+    a = np.array([0, 0, 0, 0, g, 0])
+    qdd = np.zeros(2)
+    for i in range(2):
+        a = X[i] @ a + c[i]
+        qdd[i] = (b[i] - U[i] @ a)/D[i]
+        a = a + S*qdd[i]
+    return qdd
+"""
+LOADED = """
+import numpy as np
+
+l1, l2, e, m, g = 0.3, 0.5, 0.2/np.sqrt(2), 1.0, 9.81
+IA, weight = 1.0*0.3**2/3, 1.0*9.81*0.15
+
+def leg(xy, v, a, s, k):
+    p = xy - np.array([s*e, 0])
+    r = np.hypot(*p)
+    th = np.arctan2(p[1], p[0]) - k*np.arccos((l1**2 + r**2 - l2**2)/(2*l1*r))
+    u = np.array([np.cos(th), np.sin(th)])
+    w = (p - l1*u)/l2
+    h = u[0]*w[1] - u[1]*w[0]
+    J, td, pd = w/(l1*h), w @ v/(l1*h), -(v @ u)/(l2*h)
+    return th, J, J @ a + (l1*td**2*(u @ w) + l2*pd**2)/(l1*h)
+
+def f(xy, v, a, mode):
+    t1, J1, a1 = leg(xy, v, a, 1, mode[0])
+    t2, J2, a2 = leg(xy, v, a, -1, mode[1])
+    tau = IA*np.array([a1, a2]) + weight*np.cos([t1, t2])
+    return tau + m*np.linalg.inv(np.vstack([J1, J2])).T @ (a + np.array([0, g]))
+"""
+
+
+@pytest.mark.parametrize(
+    ("robot", "quantity", "text", "right", "slip"),
+    [
+        ("isotropic", "fivebar_torque_gains", GAINS, "np.sqrt([half + gap", "np.array([half + gap"),
+        ("isotropic", "servo_inertias", LEAST, "IL/(3.0*j**2)", "IL/(j**2)"),
+        ("identity", "turning_energy", TURNING, "np.dot(p, p) - np.dot(omega, p)**2)", "np.dot(p, p))"),
+        ("isotropic", "fivebar_torque_massless", LOADED, "(a + np.array([0, g]))", "a"),
+    ],
+    ids=["roots", "share", "identity", "gravity of a payload"],
+)  # fmt: skip
+def test_a_slip_is_told_in_its_line(robot, quantity, text, right, slip, tmp_path):
+    told_in_its_line(robot, quantity, text, right, slip, tmp_path / "hand.py")
+
+
+def test_gravity_that_a_twist_leaves_out_is_told_in_its_line():
+    wrong = ARTICULATED.replace("np.array([0, 0, 0, 0, g, 0])", "np.zeros(6)")
+    found, good = asked(wrong, "planar2r", "forward_dynamics")
+    assert good and "leaves gravity out" in found.sentence, found
+
+
+def test_two_steps_that_no_line_was_found_for_are_told_as_what_it_amounts_to(monkeypatch, tmp_path):
+    """It was unknown, and slow to find in lines: that nothing is found there is put here."""
+    none_found = WrongLines([], written_out=False, numbers=np.zeros(0))
+    monkeypatch.setattr(Case, "looked_through", lambda *_: iter([none_found]))
+    wrong = LOADED.replace("@ (a + np.array([0, g]))", "@ a").replace("0.3**2/3", "0.3**2/12")
+    found = kl.diagnose(
+        "isotropic", "fivebar_torque_massless", written(wrong, tmp_path / "hand.py")
+    )
+    (cause,) = found.causes
+    assert "g*E2" in cause.sentence and "no line was found that does it" in cause.sentence, found
+    assert "crank" in cause.sentence and len(cause.kinds) == 2, found
