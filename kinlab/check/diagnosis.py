@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.formulas.text import base_of
 from kinlab.host.introductions import Answer, Introduction
 from kinlab.host.language import N_, _, speaking
 
@@ -324,11 +325,13 @@ class Diagnosis(Answer):
 def shown_entry(label: str) -> str:
     """An entry as people write it, counted from 1: ``tau1`` for ``inverse_dynamics[0]``.
 
-    Without a letter ``christoffel(1,2,3)``; what is no single entry stays as it is.
+    Without a letter ``christoffel(1,2,3)``; of a square that a writer explains ``v2^2``; what is no
+    single entry stays as it is.
     """
     found = _ENTRY.fullmatch(label)
     if found is None:
-        return label
+        base = base_of(label)
+        return f"{base}^2" if base else label
     if found[1] == "planar_pose" and found[2] in PLANAR_POSE:
         return PLANAR_POSE[found[2]]
     places = [str(int(k) + 1) for k in found[2].split(",")]

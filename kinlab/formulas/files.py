@@ -443,7 +443,7 @@ def _read(
     entries: dict[str, str],
 ) -> FormulaFile:
     as_typed, writing = _opened(entries, symbols, place, writing, parts)
-    typed_ = {name: value for name, value in symbols.items() if isinstance(value, str)}
+    typed_ = {typed.square_of(k): value for k, value in symbols.items() if isinstance(value, str)}
     entries, symbols = _plain(as_typed, symbols, place, writing)
     return FormulaFile(
         place,

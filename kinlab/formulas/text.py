@@ -24,9 +24,9 @@ _DIGITS = 40
 _EXPONENT = 6
 
 SHORTHAND = re.compile(r"([cs])_?([1-9]+)")
+"""c12 is cos(q1 + q2), s1 is sin(q1), as in every textbook."""
 _SYMBOL = 3
 """Digits of a Christoffel symbol."""
-"""c12 is cos(q1 + q2), s1 is sin(q1), as in every textbook."""
 
 _DOTTED = r"dtheta|thetad|dth|thd|qd|dq|theta_?dot_?|q_?dot_?|th_?dot_?"
 _TWICE_DOTTED = r"ddtheta|thetadd|ddth|thdd|qdd|ddq|theta_?ddot_?|q_?ddot_?|th_?ddot_?"
@@ -98,6 +98,12 @@ def words_in(text: str) -> list[str]:
 def tidied(text: str) -> str:
     """The text with ``**`` for ``^``, plain signs and single blanks, as Python reads it."""
     return " ".join(text.replace("^", "**").replace("·", "*").replace("−", "-").split())
+
+
+def base_of(name: str) -> str:
+    """The name whose square it is: v2 of v2_squared; empty where it is none's."""
+    found = re.fullmatch(r"([A-Za-z]{1,8}\d+)_squared", name)
+    return found[1] if found else ""
 
 
 def canonical(name: str) -> Node:

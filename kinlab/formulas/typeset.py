@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from kinlab.formulas import tree
-from kinlab.formulas.text import SHORTHAND
+from kinlab.formulas.text import SHORTHAND, base_of
 from kinlab.formulas.tree import Node, Path
 
 # -------- LaTeX of the records to MathML for a page and to plain LaTeX for Markdown
@@ -185,6 +185,8 @@ def symbol(name: str) -> str:
         plain, inside = name.rstrip("]").split("[", 1)
         plain = plain.replace("_", r"\_")
         return rf"\text{{{plain}}}[{inside}]"
+    if base := base_of(name):
+        return f"{symbol(base)}^{{2}}"
     head, index = re.fullmatch(r"(.*?)_?(\d*)", name).groups()  # type: ignore[union-attr]
     head, _, rest = head.partition("_")
     if head in _GREEK:

@@ -18,6 +18,13 @@ y_2 &= l_1 s_1 + l_{c2} s_{12}, & \dot{y}_2 &= l_1 c_1 \dot\theta_1 + l_{c2} c_{
 M_{22} &= m_2 l_{c2}^2 + I_2 \\
 M_{12} &= M_{22} + m_2 l_1 l_{c2} c_2
 \end{align*}"""
+MOMENTA = r"""Momentum first:
+\begin{align*}
+\dot p_1 &= M_{11}\ddot\theta_1 + M_{12}\ddot\theta_2 - \mu s_2(2\dot\theta_1\dot\theta_2 + \dot\theta_2^2) \\
+\frac{\partial L}{\partial\theta_1} &= -(m_1+m_2)gl_1c_1 - m_2gl_2c_{12} \\
+\tau_1 &= M_{11}\ddot\theta_1 + M_{12}\ddot\theta_2 - \mu s_2(2\dot\theta_1\dot\theta_2 + \dot\theta_2^2) + (m_1+m_2)gl_1c_1 + m_2gl_2c_{12}
+\end{align*}
+Here $\mu = m_2l_1l_2$, $M_{11} = (m_1+m_2)l_1^2 + m_2l_2^2 + 2\mu c_2$ and $M_{12} = m_2l_2^2 + \mu c_2$."""
 SHORTHAND = """px = l1*cos(q1) + l2*cos(q1+q2)
 k = l2*sin(q1+q2)
 dpx/dq2 = -k
@@ -30,6 +37,7 @@ J11 = -l1*sin(q1) - k"""
         ("single_link", "tau1", LAGRANGE, "+ m1 g lc1 cos q1", "- m1 g lc1 cos q1", "should be + m1 g lc1 cos q1"),
         ("planar2r_rods", "M12", ALIGNED, "l_{c2} c_2", "l_{c2} s_2", "s_2 should be c_2"),
         ("planar2r_rods", "M12", ALIGNED, r"M_{22} &= m_2 l_{c2}^2", r"M_{22} &= m_2 l_2^2", "l_2 should be l_{c2}"),
+        ("planar2r", "tau1", MOMENTA, "m_2l_2^2 + \\mu c_2", "m_2l_2^2 + 2\\mu c_2", "the factor 2 does not belong in 2\\mu c_2"),
         ("planar2r", "J11", SHORTHAND, "-l1*sin(q1) - k", "l1*sin(q1) - k", "l1*sin(q1) should be -l1*sin(q1)"),
     ],
 )  # fmt: skip

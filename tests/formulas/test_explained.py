@@ -249,3 +249,24 @@ def test_what_is_judged_is_not_said_to_be_passed_over():
     assert found.agrees and not found.remarks, found
     found = kl.diagnose("planar2r", "fk[1,3]", "x = l1*c1 + l2*s12; y = l1*s1 + l2*s12")
     assert found.agrees and "x" in found.remarks[-1], found
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        (
+            "v_1^2 = l1^2 qd1^2\nv_2^2 = l1^2 qd1^2 + l2^2 (qd1+qd2)^2 + 2 l1 l2 cos(q2) qd1 qd2\n"
+            "T = 1/2 m1 v_1^2 + 1/2 m2 v_2^2",
+            "v2^2: qd2 should be (qd1+qd2) in 2 l1 l2 cos(q2) qd1 qd2",
+        ),
+        (
+            r"$T = 1/2 m_1 v_1^2 + 1/2 m_1 v_2^2$ with $v_1^2 = l_1^2 \dot q_1^2$, $v_2^2 = "
+            r"l_1^2 \dot q_1^2 + l_2^2 (\dot q_1+\dot q_2)^2 + 2 l_1 l_2 \cos q_2 \dot q_1 (\dot q_1 + \dot q_2)$",
+            "m_1 should be m_2 in 1/2 m_1 v_2^{2}",
+        ),
+    ],
+    ids=["in it", "beside it"],
+)  # fmt: skip
+def test_a_square_that_is_explained_keeps_its_writers_name(text, told):
+    found = kl.diagnose("planar2r", "T", text)
+    assert told in found.sentence and "squared" not in str(found), found

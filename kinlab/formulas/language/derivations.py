@@ -13,6 +13,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from itertools import pairwise
 
+from kinlab.errors import ExpressionError
 from kinlab.formulas.language.prose import is_condition
 from kinlab.formulas.language.sentences import is_word
 from kinlab.formulas.language.vocabulary import ASIDE, CHINESE, LATIN, is_linking, is_listed
@@ -120,7 +121,7 @@ def conclusion(text: str, entry: str, last: bool = False) -> str:
     if not formulas or text.count("=") < 2 + own[-1].right.count("=") or len(formulas) > _STEPS:
         return ""
     name, steps = own[-1].name, [*dict.fromkeys(formulas)]
-    others = {own_name(one.name): one for one in found if one.name != name and not one.is_state}
+    others = {_key(one.name): one for one in found if one.name != name and not one.is_state}
     chain = " = ".join([name, *steps])
     kept = [one.text for one in _explaining(chain, others)]
     if any(_SQUARE.search(one.name) and f"{one.name} =" not in "".join(kept) for one in found):
@@ -130,6 +131,13 @@ def conclusion(text: str, entry: str, last: bool = False) -> str:
     told = "; ".join([*kept, *lines])
     told = f"${told}$" if "\\" in told else told
     return "" if _A_GRID in told else told
+
+
+def _key(name: str) -> str:
+    """A name by which it may be used; as typed where no formula can have it: a dot over p."""
+    with suppress(ExpressionError):
+        return own_name(name)
+    return name
 
 
 def _times_given(text: str, entry: str) -> int:

@@ -140,7 +140,7 @@ _THRICE = 3
 _SHARES, _SHARED = (3, 4, 6, 12), 1.14
 """What inertias and torques are divided by, beside halves, and cost of such a share for the whole.
 """
-_MIXED_SQUARE = 1.06
+_OF_TWO_VECTORS = 1.06
 """Cost of the square of their product, taken from that of the squares of two vectors."""
 _FALLING, _FALLING_TOO = 1.04, 1.12
 """Cost of gravity for a name of it that nothing uses, and for one that something does."""
@@ -443,7 +443,7 @@ def _of_inertias(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
         elif isinstance(mixed, ast.Call):
             mixed.args = [first, second]
         square = ast.BinOp(mixed, ast.Pow(), number(2))
-        yield here.instead(ast.BinOp(node, ast.Sub(), square), "missing term", _MIXED_SQUARE)
+        yield here.instead(ast.BinOp(node, ast.Sub(), square), "missing term", _OF_TWO_VECTORS)
 
 
 def _squared(node: ast.expr) -> ast.expr | None:
