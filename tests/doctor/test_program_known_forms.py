@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from hand_programs import asked, told_in_its_line, written
+from test_program_of_rows import LOAD
 
 import kinlab as kl
 from kinlab.doctor.changes import Case
@@ -94,28 +95,6 @@ def f(q, v, tau):
         a = a + S*qdd[i]
     return qdd
 """
-LOADED = """
-import numpy as np
-
-l1, l2, e, m, g = 0.3, 0.5, 0.2/np.sqrt(2), 1.0, 9.81
-IA, weight = 1.0*0.3**2/3, 1.0*9.81*0.15
-
-def leg(xy, v, a, s, k):
-    p = xy - np.array([s*e, 0])
-    r = np.hypot(*p)
-    th = np.arctan2(p[1], p[0]) - k*np.arccos((l1**2 + r**2 - l2**2)/(2*l1*r))
-    u = np.array([np.cos(th), np.sin(th)])
-    w = (p - l1*u)/l2
-    h = u[0]*w[1] - u[1]*w[0]
-    J, td, pd = w/(l1*h), w @ v/(l1*h), -(v @ u)/(l2*h)
-    return th, J, J @ a + (l1*td**2*(u @ w) + l2*pd**2)/(l1*h)
-
-def f(xy, v, a, mode):
-    t1, J1, a1 = leg(xy, v, a, 1, mode[0])
-    t2, J2, a2 = leg(xy, v, a, -1, mode[1])
-    tau = IA*np.array([a1, a2]) + weight*np.cos([t1, t2])
-    return tau + m*np.linalg.inv(np.vstack([J1, J2])).T @ (a + np.array([0, g]))
-"""
 
 
 @pytest.mark.parametrize(
@@ -124,7 +103,7 @@ def f(xy, v, a, mode):
         ("isotropic", "fivebar_torque_gains", GAINS, "np.sqrt([half + gap", "np.array([half + gap"),
         ("isotropic", "servo_inertias", LEAST, "IL/(3.0*j**2)", "IL/(j**2)"),
         ("identity", "turning_energy", TURNING, "np.dot(p, p) - np.dot(omega, p)**2)", "np.dot(p, p))"),
-        ("isotropic", "fivebar_torque_massless", LOADED, "(a + np.array([0, g]))", "a"),
+        ("isotropic", "fivebar_torque_massless", LOAD, "m*(a + np.array([0, g]))", "m*a"),
     ],
     ids=["roots", "share", "identity", "gravity of a payload"],
 )  # fmt: skip
@@ -142,7 +121,7 @@ def test_two_steps_that_no_line_was_found_for_are_told_as_what_it_amounts_to(mon
     """It was unknown, and slow to find in lines: that nothing is found there is put here."""
     none_found = WrongLines([], written_out=False, numbers=np.zeros(0))
     monkeypatch.setattr(Case, "looked_through", lambda *_: iter([none_found]))
-    wrong = LOADED.replace("@ (a + np.array([0, g]))", "@ a").replace("0.3**2/3", "0.3**2/12")
+    wrong = LOAD.replace("m*(a + np.array([0, g]))", "m*a").replace("IA + mA*cA**2", "IA")
     found = kl.diagnose(
         "isotropic", "fivebar_torque_massless", written(wrong, tmp_path / "hand.py")
     )

@@ -195,10 +195,10 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     if shape in ((2,), (3,)) and isinstance(node, ast.Name):
         yield from _falling(here, scope, shape[0])
     if isinstance(parent, ast.Return) and len(shape) == 1 and scope.has_numpy:
-        root = ast.Attribute(ast.Name("np", ast.Load()), "sqrt", ast.Load())
+        roots = member(named("np"), "sqrt")
         array = isinstance(node, ast.Call) and called(node) in ("array", "asarray")
         entries = node.args[:1] if array else [node]
-        yield here.instead(ast.Call(root, entries, []), "function", _ROOTS)
+        yield here.instead(ast.Call(roots, entries, []), "function", _ROOTS)
     squared = isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.Pow)
     if squared and here.field == "left" and isinstance(node, ast.Name | ast.Attribute):
         half = ast.BinOp(node, ast.Div(), number(2))
