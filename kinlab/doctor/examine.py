@@ -365,11 +365,10 @@ def _possible(
             found_ = one_for_each_kind(few, ways, split)
             found_ = found_ or several_taken_otherwise(few, ways, split)
             causes = _exactly([_as_steps(found) for found in found_], worst)
-            # two readings of a program of which no line explains it fit by accident more often
             if program is None:
                 causes = causes or _exactly([*in_pairs(few, tried)], worst)
-            else:
-                causes = [*map(_without_a_line, causes)]
+            else:  # which three steps, or two readings of the whole, fit by accident more often
+                causes = [_without_a_line(one) for one in causes if len(one.kinds) <= _SLIPS]
     if not causes and signs:
         causes = [*in_pairs(case, tried)]
     if same and all(len(cause.kinds) > LIST for cause in causes):

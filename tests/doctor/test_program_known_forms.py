@@ -97,15 +97,47 @@ def f(q, v, tau):
 """
 
 
+STATICS = """
+from math import sin, cos
+import numpy as np
+
+def f(q, wrench):
+    L = (0.5, 0.4, 0.25)
+    fx, fy = wrench[0], wrench[1]
+    nz = wrench[5]
+    tau = np.zeros(3)
+    for j in range(3):
+        ang = sum(q[:j])
+        rx = ry = 0.0
+        for k in range(j, 3):
+            ang += q[k]
+            rx += L[k]*cos(ang)
+            ry += L[k]*sin(ang)
+        tau[j] = rx*fy - ry*fx + nz
+    return tau
+"""
+LOADED = """
+import numpy as np
+
+def f(q, wrench):
+    s1, c1, s12, c12 = np.sin(q[0]), np.cos(q[0]), np.sin(q[0] + q[1]), np.cos(q[0] + q[1])
+    J = np.array([[-0.5*s1 - 0.4*s12, -0.4*s12], [0.5*c1 + 0.4*c12, 0.4*c12]])
+    force, moment = wrench[:2], wrench[5]
+    return J.T @ force + moment
+"""
+
+
 @pytest.mark.parametrize(
     ("robot", "quantity", "text", "right", "slip"),
     [
+        ("planar3r", "statics", STATICS, "ang = sum(q[:j])", "ang = 0.0"),
+        ("planar2r", "statics", LOADED, "J.T @ force + moment", "J.T @ force"),
         ("isotropic", "fivebar_torque_gains", GAINS, "np.sqrt([half + gap", "np.array([half + gap"),
         ("isotropic", "servo_inertias", LEAST, "IL/(3.0*j**2)", "IL/(j**2)"),
         ("identity", "turning_energy", TURNING, "np.dot(p, p) - np.dot(omega, p)**2)", "np.dot(p, p))"),
         ("isotropic", "fivebar_torque_massless", LOAD, "m*(a + np.array([0, g]))", "m*a"),
     ],
-    ids=["roots", "share", "identity", "gravity of a payload"],
+    ids=["up to here", "moment", "roots", "share", "identity", "gravity of a payload"],
 )  # fmt: skip
 def test_a_slip_is_told_in_its_line(robot, quantity, text, right, slip, tmp_path):
     told_in_its_line(robot, quantity, text, right, slip, tmp_path / "hand.py")

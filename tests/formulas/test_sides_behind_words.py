@@ -460,3 +460,18 @@ def test_a_line_ends_behind_a_clause_that_is_true(sign):
     lines = f"I2 = m2*l2^2/12   {sign} rod about its centre{')' * (sign == '(')}\nlc2 = l2/2\n"
     assert kl.diagnose("planar2r_rods", "M22", f"{lines}M22 = I2 + m2*lc2^2").agrees
     assert not kl.diagnose("planar2r_rods", "M22", f"{lines}M22 = I2 + m2*l2^2").agrees
+
+
+def test_what_is_pointed_at_is_a_remark():
+    right = "g2 = m2*g*l2*c12   <- gravity term"
+    assert kl.diagnose("planar2r", "g2", right).agrees
+    wrong = kl.diagnose("planar2r", "g2", right.replace("c12", "s12"))
+    assert "s12 should be c12" in wrong.sentence
+    for words in ("from the vertical", "times two"):
+        with pytest.raises(ExpressionError, match="may change"):
+            kl.diagnose("planar2r", "g2", f"g2 = m2*g*l2*c12   <- {words}")
+
+
+def test_what_is_not_to_be_forgotten_denies_nothing():
+    text = r"Differentiate $T$ (do not forget the cross term!): $p_2 = m_2 l_2^2(\dot\theta_1+\dot\theta_2) + m_2 l_1 l_2 c_2\dot\theta_1$"
+    assert kl.diagnose("planar2r", "p2", text).agrees

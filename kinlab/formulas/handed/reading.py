@@ -35,6 +35,8 @@ from kinlab.formulas.text import refuse_nested
 from kinlab.formulas.typed import begins_with, without_gaps
 from kinlab.host.language import _
 
+_POINTED_AT = re.compile(r"(=[^\n]{1,300}?)[ \t](?:<-+|←)[ \t]+(?=[^\W\d_]{3})")
+"""What is pointed at with words behind a formula: ``N1 = ...   <- coriolis``."""
 _ALONE = re.compile(
     r"(?:p_?)?[xyz]|[VUPTKL]|phi|det\w*|E_?[pk]|\w*energy|lagrangian|[\w,\[\]]*[\d\]]"
 )
@@ -259,6 +261,7 @@ def as_formula(
     text, tried = _without_a_check(text)
     doubts = doubtful(text, entry)
     text, marks = without_marks(siciliano_s_letters(text))
+    text = _POINTED_AT.sub(r"\1 # ", text)
     refuse_comments(text, place)
     text = without_remark_behind(text, place)
     text = without_code(text, not several and bool(_ALONE.fullmatch(entry)))

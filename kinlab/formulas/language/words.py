@@ -153,7 +153,7 @@ _COORDINATE = re.compile(
 )
 _FORMULA = re.compile(r"[=*^]")
 """Where a formula begins, or its name ended."""
-_HARMLESS_NOT = "depend|contain|appear|matter|change|enter|vary"
+_HARMLESS_NOT = "depend|contain|appear|matter|change|enter|vary|forget"
 _DENIED = re.compile(
     r"\b(?:if|falls|wenn|assum\w+|never|unless|kein\w*|inverse\s+(?:of|der|des)"
     rf"|(?:not|nicht)(?!\s+(?:{_HARMLESS_NOT})))\b|如果|假设|n['’]t\b(?!\s+forget)"

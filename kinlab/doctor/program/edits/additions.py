@@ -142,6 +142,8 @@ _SHARES, _SHARED = (3, 4, 6, 12), 1.14
 """
 _OF_TWO_VECTORS = 1.06
 """Cost of the square of their product, taken from that of the squares of two vectors."""
+_UNUSED = 1.06
+"""Cost of a number that nothing uses, added to every entry of what is returned."""
 _FALLING, _FALLING_TOO = 1.04, 1.12
 """Cost of gravity for a name of it that nothing uses, and for one that something does."""
 _ROOTS = 1.14
@@ -194,6 +196,11 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         yield here.instead(ast.Call(total, [node], []), "function", cost)
     if shape in ((2,), (3,)) and isinstance(node, ast.Name):
         yield from _falling(here, scope, shape[0])
+    if isinstance(parent, ast.Return) and len(shape) == 1 and isinstance(node, ast.BinOp):
+        for name in sorted(scope.unused):
+            if scope.shapes.get(name) == ():
+                more = ast.BinOp(node, ast.Add(), named(name))  # the same to every entry
+                yield here.instead(more, "missing term", _UNUSED)
     if isinstance(parent, ast.Return) and len(shape) == 1 and scope.has_numpy:
         roots = member(named("np"), "sqrt")
         array = isinstance(node, ast.Call) and called(node) in ("array", "asarray")

@@ -28,6 +28,8 @@ _RATIO, _SQUARED = 5, 1.1
 """A whole number from which on it may be a ratio of gears, and cost of its square for it."""
 _ENTRIES, _OF_AN_ARGUMENT = 7, 1.1
 """Entries of an argument, and cost of one that is not read for nothing."""
+_UP_TO_HERE = 1.1
+"""Cost of a sum of an argument's entries that begins with nothing."""
 _ROOTS, _OF_A_ROOT = (2, 3, 5), 1.1
 """Numbers that may be lost roots, and cost of one."""
 _OF_A_BRANCH, _KEYS = 1.1, 2
@@ -64,11 +66,21 @@ def _as_in_the_other_branch(here: Here, scope: Scope) -> Iterator[ast.expr]:
             yield ast.Subscript(node, key, ast.Load())
 
 
+def _up_to_here(here: Here, scope: Scope) -> Iterator[ast.expr]:
+    """What a row of an argument comes to up to a loop's turn: ``angle = sum(q[:i])``."""
+    loops = [one.target for one in here.above if isinstance(one, ast.For)]
+    turns = [one.id for one in loops if isinstance(one, ast.Name)]
+    rows = [name for name in _given(here) if len(scope.shapes.get(name) or ()) == 1]
+    for row in rows if turns else ():
+        part = ast.Slice(None, ast.Name(turns[-1], ast.Load()), None)
+        entries = ast.Subscript(ast.Name(row, ast.Load()), part, ast.Load())
+        yield ast.Call(ast.Name("sum", ast.Load()), [entries], [])
+
+
 def _unread_entries(here: Here, scope: Scope) -> Iterator[ast.expr]:
     """The entries of an argument of which only others are read: ``wrench[5]`` for no moment."""
     tree = here.above[0]
-    given = [one.arg for one in tree.args.args] if isinstance(tree, ast.FunctionDef) else []
-    for name in given:
+    for name in _given(here):
         sizes = scope.shapes.get(name) or ()
         uses = [x for x in nodes(tree) if isinstance(x, ast.Name) and x.id == name]
         read = [x for x in nodes(tree) if isinstance(x, ast.Subscript) and x.value in uses]
@@ -79,6 +91,12 @@ def _unread_entries(here: Here, scope: Scope) -> Iterator[ast.expr]:
             left -= {*_constant_keys(one.slice, sizes[0])} or left
         for k in sorted(left):
             yield ast.Subscript(ast.Name(name, ast.Load()), ast.Constant(k), ast.Load())
+
+
+def _given(here: Here) -> list[str]:
+    """The arguments of the function that it stands in."""
+    tree = here.above[0]
+    return [one.arg for one in tree.args.args] if isinstance(tree, ast.FunctionDef) else []
 
 
 def _constant_keys(key: ast.expr, size: int) -> list[int]:
@@ -186,6 +204,8 @@ def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
     if value == 0 and isinstance(here.parent, ast.Assign):
         for other in _unread_entries(here, scope):
             yield here.instead(other, "name", _OF_AN_ARGUMENT)
+        for other in _up_to_here(here, scope):
+            yield here.instead(other, "missing term", _UP_TO_HERE)
     product = getattr(here.parent, "op", None)
     if value == 1 and isinstance(value, float) and isinstance(product, ast.Mult):
         yield here.within(here.node, "value", 0.5, "factor", _OF_ONE)  # 1.0*x says nothing
