@@ -198,7 +198,7 @@ class Diagnosis(Answer):
         if self.causes:
             return self.causes[0].sentence
         if self.form == "words":
-            return not_judged(self.title, _("; ").join(self.remarks))
+            return not_judged(self.title, self.reason)
         if self.form == "near":
             said = _(
                 "{function} is {quantity} of {robot} to {digits} digits only: rounded constants, "
@@ -209,6 +209,11 @@ class Diagnosis(Answer):
                 **self._names
             )
         return _("; ").join((said, *self.proved))
+
+    @property
+    def reason(self) -> str:
+        """Of a formula that was not judged for words beside it: which, and what is to be said."""
+        return _("; ").join(self.remarks)
 
     @property
     def _worst(self) -> str:

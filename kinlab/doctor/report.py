@@ -294,8 +294,7 @@ def _of_sound(
 def _judged(found: list[Diagnosis], path: str) -> tuple[list[Diagnosis], list[Unread]]:
     """What was judged, and what was not for the words beside it."""
     unread = [one for one in found if one.form == "words"]
-    told = [ExpressionError(_("; ").join(one.remarks)) for one in unread]
-    lost = [Unread(f"{path}: {x.function}", why) for x, why in zip(unread, told, strict=True)]
+    lost = [Unread(f"{path}: {one.function}", ExpressionError(one.reason)) for one in unread]
     return [one for one in found if one.form != "words"], lost
 
 

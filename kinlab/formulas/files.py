@@ -56,7 +56,7 @@ from kinlab.formulas.signs.named import (
     without_its_axes,
 )
 from kinlab.formulas.signs.refusals import refused
-from kinlab.formulas.text import LENGTH, parse, tidied
+from kinlab.formulas.text import LENGTH, parse, square_of, tidied
 from kinlab.formulas.tree import Node
 from kinlab.host.language import N_, _
 
@@ -401,7 +401,7 @@ def _of_one_joint(text: str, key: str) -> str:
 def _bare_name(name: str) -> str:
     with suppress(ExpressionError):
         name = typed.own_name(name)
-    return typed.joined_up(typed.square_of(name))
+    return typed.joined_up(square_of(name))
 
 
 def _used(file: FormulaFile) -> set[str]:
@@ -443,7 +443,7 @@ def _read(
     entries: dict[str, str],
 ) -> FormulaFile:
     as_typed, writing = _opened(entries, symbols, place, writing, parts)
-    typed_ = {typed.square_of(k): value for k, value in symbols.items() if isinstance(value, str)}
+    typed_ = {square_of(k): value for k, value in symbols.items() if isinstance(value, str)}
     entries, symbols = _plain(as_typed, symbols, place, writing)
     return FormulaFile(
         place,
@@ -546,7 +546,7 @@ def _plain(
         for name, value in symbols.items()
         if isinstance(value, str)
     }
-    named = {typed.square_of(name): value for name, value in (symbols | explained).items()}
+    named = {square_of(name): value for name, value in (symbols | explained).items()}
     return formulas, _as_read(named, formulas.values(), explained.values())
 
 

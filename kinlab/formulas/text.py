@@ -100,6 +100,14 @@ def tidied(text: str) -> str:
     return " ".join(text.replace("^", "**").replace("·", "*").replace("−", "-").split())
 
 
+SQUARED = "^2"
+
+
+def square_of(name: str) -> str:
+    """What the square of a name is called in plain text: v2_squared of v2^2; others stay."""
+    return f"{name.removesuffix(SQUARED)}_squared" if name.endswith(SQUARED) else name
+
+
 def base_of(name: str) -> str:
     """The name whose square it is: v2 of v2_squared; empty where it is none's."""
     found = re.fullmatch(r"([A-Za-z]{1,8}\d+)_squared", name)

@@ -26,7 +26,7 @@ from kinlab.formulas.signs.letters import ABOVE, BELOW, SIGNS, WIDE, ascii_text,
 from kinlab.formulas.signs.named import is_named, is_named_elsewhere, plain_name
 from kinlab.formulas.signs.refusals import refused
 from kinlab.formulas.signs.remarks import without_remarks
-from kinlab.formulas.text import canonical, parse
+from kinlab.formulas.text import SQUARED, canonical, parse, square_of
 from kinlab.host.language import N_, _
 
 # -------- Which writing it is
@@ -277,14 +277,8 @@ def _waves_apart(text: str, place: str, writing: Hand) -> str:
     return _WAVES.sub(apart, text)
 
 
-_SQUARED = "^2"
 _NUMBERED = re.compile(r"([A-Za-z]+)(\d*)")
 _TWO = r"\s*(?:\*\*|\^)\s*(?:2|\(2\))(?![\w.]|\s*(?:\*\*|\^))"
-
-
-def square_of(name: str) -> str:
-    """What the square of a name is called in plain text: v2_squared of v2^2; others stay."""
-    return f"{name.removesuffix(_SQUARED)}_squared" if name.endswith(_SQUARED) else name
 
 
 def _with_squares(text: str, place: str, writing: Hand) -> str:
@@ -293,8 +287,8 @@ def _with_squares(text: str, place: str, writing: Hand) -> str:
     Raises:
         ExpressionError: v2 stands there without its square.
     """
-    for square in sorted(one for one in writing.known if one.endswith(_SQUARED)):
-        name = square.removesuffix(_SQUARED)
+    for square in sorted(one for one in writing.known if one.endswith(SQUARED)):
+        name = square.removesuffix(SQUARED)
         found = _NUMBERED.fullmatch(name)
         if found is None:
             continue
@@ -740,11 +734,11 @@ def stands_in(name: str, text: str) -> bool:
     Args:
         name, text: as typed.
     """
-    used = rf"(?<![A-Za-z\\]){re.escape(joined_up(name))}(?![A-Za-z_\d₀-₉])"
-    return bool(re.search(used, text)) or any(
-        re.search(rf"(?<![A-Za-z]){re.escape(joined_up(name))}(?![\d₀-₉])", plain)
-        for plain in _both_ways(text)
-    )
+    one = re.escape(joined_up(name))
+    if re.search(rf"(?<![A-Za-z\\]){one}(?![A-Za-z_\d₀-₉])", text):
+        return True
+    used = re.compile(rf"(?<![A-Za-z]){one}(?![\d₀-₉])")
+    return any(map(used.search, _both_ways(text)))
 
 
 @lru_cache(maxsize=256)
@@ -789,7 +783,7 @@ def own_name(text: str) -> str:
     """
     square = _SQUARE.fullmatch(text.strip("& "))
     if square:
-        return f"{own_name(square[1])}{_SQUARED}"
+        return f"{own_name(square[1])}{SQUARED}"
     name, long = entry_name(text), _PRINTED["L"]
     return name.replace(long, "L") if name.startswith(long) and long not in text else name
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hand_programs import asked, told_in_its_line, written
 from test_program_of_rows import LOAD
+from test_program_understood import ARTICULATED
 
 import kinlab as kl
 from kinlab.doctor.changes import Case
@@ -51,52 +52,6 @@ def f(points, masses, omega):
         T += 0.5*m*(np.dot(omega, omega)*np.dot(p, p) - np.dot(omega, p)**2)
     return T
 """
-ARTICULATED = """
-import numpy as np
-
-l1, l2, m1, m2, g = 0.5, 0.4, 2.0, 1.5, 9.81
-
-def f(q, v, tau):
-    S = np.array([0, 0, 1.0, 0, 0, 0])
-    X, v0, c = [], np.zeros(6), []
-    IA, pA = [], []
-    V = v0
-    for i in range(2):
-        L, m = (0.0, l1)[i], (m1, m2)[i]
-        r = (l1, l2)[i]
-        C, s = np.cos(q[i]), np.sin(q[i])
-        E = np.array([[C, s, 0], [-s, C, 0], [0, 0, 1]])
-        P = np.array([[0, 0, 0], [0, 0, -L], [0, L, 0]])
-        Xi = np.block([[E, np.zeros((3, 3))], [-E @ P, E]])
-        V = Xi @ V + S*v[i]
-        w, u = V[:3], V[3:]
-        wx = np.array([[0, -w[2], w[1]], [w[2], 0, -w[0]], [-w[1], w[0], 0]])
-        ux = np.array([[0, -u[2], u[1]], [u[2], 0, -u[0]], [-u[1], u[0], 0]])
-        cross = np.block([[wx, np.zeros((3, 3))], [ux, wx]])
-        c.append(cross @ (S*v[i]))
-        h = np.array([[0, 0, 0], [0, 0, -r], [0, r, 0]])
-        I = np.block([[m*h @ h.T, m*h], [m*h.T, m*np.eye(3)]])
-        X.append(Xi); IA.append(I); pA.append(-cross.T @ (I @ V))
-    U, D, b = [None]*2, [0]*2, [0]*2
-    for i in (1, 0):
-        U[i] = IA[i] @ S
-        D[i] = S @ U[i]
-        b[i] = tau[i] - S @ pA[i]
-        if i:
-            Ia = IA[1] - np.outer(U[1], U[1])/D[1]
-            pa = pA[1] + Ia @ c[1] + U[1]*b[1]/D[1]
-            IA[0] = IA[0] + X[1].T @ Ia @ X[1]
-            pA[0] = pA[0] + X[1].T @ pa
-    a = np.array([0, 0, 0, 0, g, 0])
-    qdd = np.zeros(2)
-    for i in range(2):
-        a = X[i] @ a + c[i]
-        qdd[i] = (b[i] - U[i] @ a)/D[i]
-        a = a + S*qdd[i]
-    return qdd
-"""
-
-
 STATICS = """
 from math import sin, cos
 import numpy as np
@@ -143,9 +98,9 @@ def test_a_slip_is_told_in_its_line(robot, quantity, text, right, slip, tmp_path
     told_in_its_line(robot, quantity, text, right, slip, tmp_path / "hand.py")
 
 
-def test_gravity_that_a_twist_leaves_out_is_told_in_its_line():
-    wrong = ARTICULATED.replace("np.array([0, 0, 0, 0, g, 0])", "np.zeros(6)")
-    found, good = asked(wrong, "planar2r", "forward_dynamics")
+def test_gravity_that_a_twist_leaves_out_is_told_in_its_line(tmp_path):
+    wrong = ARTICULATED.replace("np.array([0, 0, 0, 0, 0, 9.81])", "np.zeros(6)")
+    found, good = asked(wrong, "spatial3r", "forward_dynamics", tmp_path / "hand.py")
     assert good and "leaves gravity out" in found.sentence, found
 
 

@@ -199,6 +199,12 @@ ROUNDING = ("round", "around", "round_", "rint", "trunc", "fix")
 """Functions that round."""
 
 
+def array_of(entries: Sequence[ast.expr]) -> ast.Call:
+    """Numpy's array of what it is made of: ``np.array([a, b])``."""
+    array = ast.Attribute(ast.Name("np", ast.Load()), "array", ast.Load())
+    return ast.Call(array, [ast.List([*entries], ast.Load())], [])
+
+
 def number(value: Any) -> ast.expr:
     """A number as it is written."""
     return ast.UnaryOp(ast.USub(), ast.Constant(-value)) if value < 0 else ast.Constant(value)

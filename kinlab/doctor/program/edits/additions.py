@@ -31,6 +31,7 @@ from kinlab.doctor.program.places import (
     Here,
     ProgramEdit,
     are_counted,
+    array_of,
     follow,
     is_nothing,
     number,
@@ -196,22 +197,15 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         yield here.instead(ast.Call(total, [node], []), "function", cost)
     if shape in ((2,), (3,)) and isinstance(node, ast.Name):
         yield from _falling(here, scope, shape[0])
-    if isinstance(parent, ast.Return) and len(shape) == 1 and isinstance(node, ast.BinOp):
-        for name in sorted(scope.unused):
-            if scope.shapes.get(name) == ():
-                more = ast.BinOp(node, ast.Add(), named(name))  # the same to every entry
-                yield here.instead(more, "missing term", _UNUSED)
-    if isinstance(parent, ast.Return) and len(shape) == 1 and scope.has_numpy:
-        roots = member(named("np"), "sqrt")
-        array = isinstance(node, ast.Call) and called(node) in ("array", "asarray")
-        entries = node.args[:1] if array else [node]
-        yield here.instead(ast.Call(roots, entries, []), "function", _ROOTS)
+    if isinstance(parent, ast.Return) and len(shape) == 1:
+        yield from _of_a_returned_row(here, scope)
     squared = isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.Pow)
     if squared and here.field == "left" and isinstance(node, ast.Name | ast.Attribute):
         half = ast.BinOp(node, ast.Div(), number(2))
         yield here.instead(half, "missing factor", _HALF_SQUARED)
     if shape == () and isinstance(node, ast.BinOp):
-        yield from _of_inertias(here, scope)
+        yield from _shares(here, node) if isinstance(node.op, ast.Div) else ()
+        yield from _less_what_is_along(here, node) if isinstance(node.op, ast.Mult) else ()
     for term in _in_the_other_case(here) if zero else ():
         if scope.observed.shape(term) == ():
             yield here.instead(copied(term), "number", 1.06)
@@ -269,8 +263,7 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     if (summand or listed or trig or below) and not (isinstance(node, ast.Constant) or count):
         passed = isinstance(parent, ast.Return) and not isinstance(node, ast.BinOp)
         counted = isinstance(_leftmost(node), ast.Constant)
-        array = isinstance(node, ast.Call) and called(node) in ("array", "asarray")
-        used = (array or here.field == "elt") and _is_a_term_elsewhere(here)
+        used = (_is_array(node) or here.field == "elt") and _is_a_term_elsewhere(here)
         for value in (2, 0.5, *([_THRICE] * (isinstance(node, ast.Name) and not trig))):
             of_names = isinstance(node, ast.BinOp) and not isinstance(node.right, ast.Constant)
             times = chains.without_two(node) if value < 1 else None
@@ -427,30 +420,47 @@ def _falling(here: Here, scope: Scope, size: int) -> Iterator[ProgramEdit]:
     for name, known in scope.shapes.items() if scope.has_numpy else ():
         if known == () and GRAVITY.match(name):
             cost = _FALLING if name in scope.unused else _FALLING_TOO
-            row = ast.List([*[number(0)] * (size - 1), named(name)], ast.Load())
-            upwards = ast.Call(member(named("np"), "array"), [row], [])
+            upwards = array_of([*[number(0)] * (size - 1), named(name)])
             yield here.instead(ast.BinOp(here.node, ast.Add(), upwards), "missing term", cost)
 
 
-def _of_inertias(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
-    """A share of what is divided, ``I/(3*j**2)``; of squares of two vectors that of their product:
-    ``w @ w * (r @ r) - (w @ r)**2``.
-    """
+def _of_a_returned_row(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """A number more in every entry, that nothing uses; the roots of what is returned."""
     node = here.node
-    assert isinstance(node, ast.BinOp)
-    if isinstance(node.op, ast.Div) and not isinstance(node.right, ast.Constant):
-        for value in _SHARES:
-            below = chains.times(number(value), node.right)
-            yield here.instead(ast.BinOp(node.left, ast.Div(), below), "factor", _SHARED)
-    first, second = _squared(node.left), _squared(node.right)
-    if isinstance(node.op, ast.Mult) and first and second:
-        mixed = copied(node.left)
+    for name in sorted(scope.unused) if isinstance(node, ast.BinOp) else ():
+        if scope.shapes.get(name) == ():
+            more = ast.BinOp(node, ast.Add(), named(name))
+            yield here.instead(more, "missing term", _UNUSED)
+    if scope.has_numpy:
+        entries = node.args[:1] if _is_array(node) else [node]
+        roots = ast.Call(member(named("np"), "sqrt"), entries, [])
+        yield here.instead(roots, "function", _ROOTS)
+
+
+def _is_array(node: ast.expr) -> bool:
+    """Whether an array is typed in: ``np.array([a, b])``."""
+    return isinstance(node, ast.Call) and called(node) in ("array", "asarray")
+
+
+def _shares(here: Here, quotient: ast.BinOp) -> Iterator[ProgramEdit]:
+    """A share of what is divided: ``I/(3*j**2)`` for ``I/j**2``."""
+    for value in _SHARES if not isinstance(quotient.right, ast.Constant) else ():
+        below = chains.times(number(value), quotient.right)
+        yield here.instead(ast.BinOp(quotient.left, ast.Div(), below), "factor", _SHARED)
+
+
+def _less_what_is_along(here: Here, product_: ast.BinOp) -> Iterator[ProgramEdit]:
+    """Of squares of two vectors that of their product: ``w @ w * (r @ r) - (w @ r)**2``."""
+    first, second = _squared(product_.left), _squared(product_.right)
+    if first and second:
+        mixed = copied(product_.left)
         if isinstance(mixed, ast.BinOp):
             mixed.right = second
         elif isinstance(mixed, ast.Call):
             mixed.args = [first, second]
         square = ast.BinOp(mixed, ast.Pow(), number(2))
-        yield here.instead(ast.BinOp(node, ast.Sub(), square), "missing term", _OF_TWO_VECTORS)
+        rest = ast.BinOp(product_, ast.Sub(), square)
+        yield here.instead(rest, "missing term", _OF_TWO_VECTORS)
 
 
 def _squared(node: ast.expr) -> ast.expr | None:

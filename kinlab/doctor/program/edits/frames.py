@@ -15,7 +15,7 @@ from kinlab.doctor.program.edits.scope.forms import entry, named, statement_of
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.whole import value_of, whole_constant
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import Here, ProgramEdit, number, paired
+from kinlab.doctor.program.places import Here, ProgramEdit, array_of, number, paired
 from kinlab.tolerances import TOLERANCES
 
 _LINK = 4
@@ -274,9 +274,7 @@ def of_columns(
         if isinstance(here.parent, ast.Assign):
             yield here.instead(ast.Tuple(row, ast.Load()), "transposed", _ACROSS)
         elif scope.has_numpy:
-            array = ast.Attribute(named("np"), "array", ast.Load())
-            new = ast.Call(array, [ast.List(row, ast.Load())], [])
-            yield here.instead(new, "transposed", _ACROSS)
+            yield here.instead(array_of(row), "transposed", _ACROSS)
     elif isinstance(node, ast.List | ast.Tuple) and isinstance(node.ctx, ast.Load):
         given = [one for one in node.elts if isinstance(one, ast.Subscript)]
         names = tuple(getattr(one.value, "id", "") for one in given)

@@ -25,7 +25,16 @@ from kinlab.doctor.program.edits.numbers.left_out import (
     tool_behind_a_loop,
 )
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import ANGLES, DATA, Here, ProgramEdit, number, places, root
+from kinlab.doctor.program.places import (
+    ANGLES,
+    DATA,
+    Here,
+    ProgramEdit,
+    array_of,
+    number,
+    places,
+    root,
+)
 from kinlab.doctor.program.trial import Trial
 from kinlab.fivebar import FiveBar
 from kinlab.model.dh import DHTable
@@ -204,9 +213,7 @@ def _without_gravity(trial: Trial, observed: Observed, down: Array) -> Iterator[
                 still = np.zeros(len(down))
                 ways = [down] if shape == down.shape else [np.r_[still, down], np.r_[down, still]]
                 for vector in (sign * way for way in ways for sign in (-1, 1)):
-                    row = ast.List([number(float(x)) for x in vector + 0.0], ast.Load())
-                    array = ast.Attribute(ast.Name("np", ast.Load()), "array", ast.Load())
-                    new = ast.Call(array, [row], [])
+                    new = array_of([number(float(x)) for x in vector + 0.0])
                     yield replace(here.instead(new, "number", 1.05), of_the_arm=True)
 
 

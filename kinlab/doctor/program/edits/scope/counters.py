@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 
 from kinlab.doctor.bytecode.syntax import called, copied, names, nodes, text_of
 from kinlab.doctor.program.edits.scope.forms import entry, named
 from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.places import Here
 from kinlab.doctor.program.trial import Trial
 
 
@@ -21,6 +22,12 @@ def while_counters(tree: ast.FunctionDef, observed: Observed) -> Iterator[str]:
                 seen = next((y for y in map(observed.of, uses) if y is not None), None)
                 if seen is not None and seen.whole and seen.shape == ():
                     yield target.id
+
+
+def counters_around(here: Here, counting: Container[str]) -> list[str]:
+    """What the loops around a place count with, of what counts: the innermost last."""
+    loops = [x.target for x in here.above if isinstance(x, ast.For)]
+    return [x.id for x in loops if isinstance(x, ast.Name) and x.id in counting]
 
 
 def things(tree: ast.AST) -> set[str]:

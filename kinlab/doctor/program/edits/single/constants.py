@@ -9,11 +9,13 @@ from fractions import Fraction
 
 from kinlab.doctor.bytecode.syntax import called, nodes
 from kinlab.doctor.program.edits.numbers.data import is_number, measured
+from kinlab.doctor.program.edits.scope.counters import counters_around
+from kinlab.doctor.program.edits.scope.forms import entry, named
 from kinlab.doctor.program.edits.scope.functions import PI
 from kinlab.doctor.program.edits.scope.part import Scope
 from kinlab.doctor.program.edits.single.whole import SIZES, value_of, whole_constant
 from kinlab.doctor.program.observed import Seen
-from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, number
+from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, called_with, number
 from kinlab.doctor.program.trial import FieldChange
 
 POWER, OF_A_NUMBER = 1.08, 1.25
@@ -68,13 +70,11 @@ def _as_in_the_other_branch(here: Here, scope: Scope) -> Iterator[ast.expr]:
 
 def _up_to_here(here: Here, scope: Scope) -> Iterator[ast.expr]:
     """What a row of an argument comes to up to a loop's turn: ``angle = sum(q[:i])``."""
-    loops = [one.target for one in here.above if isinstance(one, ast.For)]
-    turns = [one.id for one in loops if isinstance(one, ast.Name)]
+    turns = counters_around(here, scope.counting)
     rows = [name for name in _given(here) if len(scope.shapes.get(name) or ()) == 1]
     for row in rows if turns else ():
-        part = ast.Slice(None, ast.Name(turns[-1], ast.Load()), None)
-        entries = ast.Subscript(ast.Name(row, ast.Load()), part, ast.Load())
-        yield ast.Call(ast.Name("sum", ast.Load()), [entries], [])
+        part = ast.Slice(None, named(turns[-1]), None)
+        yield called_with("sum", entry(named(row), part))
 
 
 def _unread_entries(here: Here, scope: Scope) -> Iterator[ast.expr]:

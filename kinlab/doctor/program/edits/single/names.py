@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterator
 
 from kinlab.doctor.bytecode.syntax import factors, text_of
+from kinlab.doctor.program.edits.scope.counters import counters_around
 from kinlab.doctor.program.edits.scope.forms import Turned, block_of, statement_of
 from kinlab.doctor.program.edits.scope.functions import PI
 from kinlab.doctor.program.edits.scope.part import Scope
@@ -95,7 +96,7 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
     if shape == ():
         yield from _entries_beside(here, scope)
     if len(shape) == 1 and isinstance(getattr(here.parent, "op", None), ast.Mult):
-        for counter in _counters_around(here, scope):
+        for counter in counters_around(here, scope.counting):
             one = ast.Subscript(node, ast.Name(counter, ast.Load()), ast.Load())
             yield here.instead(one, "index", _OF_THE_TURN)
     if shape and not isinstance(here.parent, ast.Subscript | ast.Attribute):
@@ -116,12 +117,6 @@ def _taken_around(here: Here) -> tuple[str, set[str]]:
     taken = f"[{ast.unparse(here.parent.slice)}]"
     lines = " ".join(map(text_of, block_of(here.above)[0]))
     return taken, {*re.findall(rf"[A-Za-z_]\w*{re.escape(taken)}", lines)}
-
-
-def _counters_around(here: Here, scope: Scope) -> list[str]:
-    """What the loops around count with."""
-    loops = [x.target for x in here.above if isinstance(x, ast.For)]
-    return [x.id for x in loops if isinstance(x, ast.Name) and x.id in scope.counting]
 
 
 def _entries_beside(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
